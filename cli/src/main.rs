@@ -1,0 +1,2 @@
+//! `gimbal`
+fn main() {}
