@@ -1,2 +1,61 @@
-//! Project tasks.
-fn main() {}
+//! Project tasks: `cargo xtask test` runs every check there is.
+//!
+//! Exit status: 0 all passed, 1 a check failed, 2 the call is wrong, 3 something needed is missing and cannot be
+//! installed from here.
+
+mod host;
+mod shell;
+mod stages;
+
+use anyhow::Result;
+use stages::{Missing, Stages};
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+usage: cargo xtask <task>
+
+  test [--only TEXT]   every check; with --only, the stages whose name contains TEXT
+  list                 names of the stages
+  deny                 cargo-deny on the whole tree; installs it if absent (minutes)
+";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match words.as_slice() {
+        ["test"] => test(&Stages::all()),
+        ["test", "--only", text] => test(&Stages::all().only(text)),
+        ["list"] => {
+            Stages::all().list();
+            ExitCode::SUCCESS
+        }
+        ["deny"] => task(&host::deny::install_and_check),
+        ["help" | "--help" | "-h"] => {
+            print!("{USAGE}");
+            ExitCode::SUCCESS
+        }
+        _ => {
+            eprint!("unknown task `{}`\n\n{USAGE}", words.join(" "));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn test(stages: &Stages) -> ExitCode {
+    if stages.is_empty() {
+        eprintln!("no stage of that name; `cargo xtask list` names them");
+        return ExitCode::from(2);
+    }
+    ExitCode::from(stages.run())
+}
+
+/// One task by itself, with the exit status of its error.
+fn task(run: &dyn Fn() -> Result<()>) -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(if error.is::<Missing>() { 3 } else { 1 })
+        }
+    }
+}

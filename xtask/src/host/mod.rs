@@ -1,0 +1,10 @@
+//! Checks that need the Rust toolchain alone.
+
+pub(crate) mod deny;
+pub(crate) mod documents;
+pub(crate) mod format;
+pub(crate) mod licences;
+pub(crate) mod lints;
+pub(crate) mod oldest_rust;
+mod spdx;
+pub(crate) mod tests;
