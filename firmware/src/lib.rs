@@ -1,0 +1,25 @@
+//! What the programs share: the board, the entry point, the instruction counter.
+//!
+//! The programs run on boards without an operating system; on the host each has an empty `main`, so that one workspace
+//! and one lock file serve both.
+
+#![no_std]
+
+/// The board that this program was built for: constants from its file in `boards/`.
+pub mod board {
+    include!(concat!(env!("OUT_DIR"), "/board.rs"));
+}
+
+#[cfg(target_os = "none")]
+pub mod counter;
+#[cfg(target_os = "none")]
+mod entry;
+
+/// Standard output and exit status by semihosting.
+#[cfg(target_os = "none")]
+pub use semihosting;
+
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+pub use cortex_m_rt::entry as start;
+#[cfg(all(target_os = "none", target_arch = "riscv32"))]
+pub use riscv_rt::entry as start;
