@@ -17,6 +17,8 @@
 //! `w_s` stands in for stiction. The printed pair of viscous constants jumps down by 35 % at the break;
 //! [`ViscousLaw::Metric`] is continuous there.
 
+pub(crate) mod level;
+
 use crate::BuildError;
 use crate::config::{positive, within};
 use crate::paper::STANDARD_GRAVITY_MPS2;

@@ -1,0 +1,155 @@
+//! The loop while the gyro is off its stops: nine modes, driven by the change of the disturbance torque.
+//!
+//! ```text
+//! x(k+1) = E x(k) + g (u(k) - u(k-1))        theta, phi', phi, T_m = rows of x
+//! ```
+//!
+//! Exact for a torque u held over each period. `phi = (Jo theta' + Bo theta) / H + offset`: the offset is what phi has
+//! moved unseen by the gyro, constant between saturations, and not part of the modes.
+//!
+//! Accuracy: f32 adds `(E - 1) x` to x, fixed point keeps the low half of x through `E x`; either way a slow mode loses
+//! nothing of its small change each period.
+
+use crate::build::complex::Complex;
+use crate::build::modes::{BLOCKS, Modes, PHYSICAL};
+use crate::build::plant::Plant;
+use crate::build::poles::ORDER;
+use crate::number::Number;
+use crate::row::Row;
+use crate::units::Units;
+
+/// The nine modes' state.
+pub(crate) type State<N> = [<N as Number>::Wide; ORDER];
+
+/// A pair of modes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Block<N: Number> {
+    transition: [N::Coef; 4],
+    drive: [N::Coef; 2],
+}
+
+/// An output at the end of a period: of the modes at its start, and of the torque's change.
+type Output<N> = Row<N, { ORDER + 1 }>;
+
+/// The free loop over one period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Law<N: Number> {
+    blocks: [Block<N>; BLOCKS],
+    single_transition: N::Coef,
+    single_drive: N::Coef,
+    gyro_angle: Output<N>,
+    gimbal_rate: Output<N>,
+    gimbal_angle: Output<N>,
+    motor_torque: Output<N>,
+    /// theta' times the period, at one instant.
+    pub(crate) gyro_move: Row<N, ORDER>,
+    /// y less `T_d`, then `z_i`, at one instant.
+    pub(crate) motor: [Row<N, ORDER>; 6],
+    /// The modes of a physical state.
+    pub(crate) entry: [Row<N, PHYSICAL>; ORDER],
+    /// Change of phi' over a period for a torque of 1.
+    pub(crate) gimbal_rate_gain: Row<N, 1>,
+}
+
+/// What the modes say before the torque of the period is known.
+pub(crate) struct Heads<N: Number>([N; ORDER]);
+
+impl<N: Number> Law<N> {
+    pub(crate) fn build(plant: &Plant, modes: &Modes, units: &Units, period_s: f64) -> Self {
+        let (transitions, single) = modes.transition(period_s);
+        let drive = modes.drive(period_s);
+        let scales = units.modes;
+        let drive_coef = |i: usize| N::coef(N::rescaled(drive[i], units.torque - scales[i]));
+        let blocks = core::array::from_fn(|b| {
+            let [a, b_, c, d] = transitions[b];
+            Block {
+                transition: [N::decay_coef(a), N::coef(b_), N::coef(c), N::decay_coef(d)],
+                drive: [drive_coef(2 * b), drive_coef(2 * b + 1)],
+            }
+        });
+        let output = |of: &dyn Fn(Complex) -> Complex, to: i32| {
+            let after = modes.row(|pole| of(pole) * pole.scale(period_s).exp());
+            let gain: f64 = modes.row(of).iter().zip(&drive).map(|(row, drive)| row * drive).sum();
+            let mut factors = [gain; ORDER + 1];
+            factors[..ORDER].copy_from_slice(&after);
+            let mut from = [units.torque; ORDER + 1];
+            from[..ORDER].copy_from_slice(&scales);
+            (Output::build(factors, from, to), gain)
+        };
+        let (gimbal_rate, rate_gain) = output(&|s| plant.gimbal_rate_of(s), units.gimbal_rate);
+        let instant = |of: &dyn Fn(Complex) -> Complex, to| Row::build(modes.row(of), scales, to);
+        let physical = units.physical();
+        let entry = modes.entry();
+        Self {
+            blocks,
+            single_transition: N::decay_coef(single),
+            single_drive: drive_coef(ORDER - 1),
+            gyro_angle: output(&|_| Complex::ONE, units.gyro_angle).0,
+            gimbal_rate,
+            gimbal_angle: output(&|s| plant.gimbal_angle_of(s), units.gimbal_angle).0,
+            motor_torque: output(&|s| plant.motor_torque_of(s), units.motor_torque).0,
+            gyro_move: instant(&|s| s.scale(period_s), units.gyro_angle),
+            motor: core::array::from_fn(|i| match i {
+                0 => instant(&|s| Complex::real(plant.integrator_gain) / s, units.motor_torque),
+                _ => instant(&|s| plant.lag_state_of(s, i - 1), units.lags[i - 1]),
+            }),
+            entry: core::array::from_fn(|i| Row::build(core::array::from_fn(|j| entry[j][i]), physical, scales[i])),
+            gimbal_rate_gain: Row::build([rate_gain], [units.torque], units.gimbal_rate),
+        }
+    }
+
+    /// phi' at the end of the period if the torque changes by `torque_change`.
+    #[inline(always)]
+    pub(crate) fn gimbal_rate(&self, heads: &Heads<N>, torque_change: N) -> N {
+        self.gimbal_rate.at(&heads.with(torque_change))
+    }
+
+    /// theta at the end of the period.
+    #[inline(always)]
+    pub(crate) fn gyro_angle(&self, heads: &Heads<N>, torque_change: N) -> N {
+        self.gyro_angle.at(&heads.with(torque_change))
+    }
+
+    /// phi less the offset at the end of the period.
+    #[inline(always)]
+    pub(crate) fn gimbal_angle(&self, heads: &Heads<N>, torque_change: N) -> N::Wide {
+        self.gimbal_angle.increment(&heads.with(torque_change))
+    }
+
+    /// `T_m` less the disturbance torque at the end of the period.
+    #[inline(always)]
+    pub(crate) fn motor_torque(&self, heads: &Heads<N>, torque_change: N) -> N {
+        self.motor_torque.at(&heads.with(torque_change))
+    }
+
+    /// The modes at the end of the period.
+    #[inline(always)]
+    pub(crate) fn advance(&self, modes: &mut State<N>, heads: &Heads<N>, torque_change: N) {
+        for (block, (x, head)) in self.blocks.iter().zip(modes.chunks_exact_mut(2).zip(heads.0.chunks_exact(2))) {
+            let [a, b, c, d] = block.transition;
+            x[0] = N::low(x[0]) + a * head[0] + b * head[1] + block.drive[0] * torque_change;
+            x[1] = N::low(x[1]) + c * head[0] + d * head[1] + block.drive[1] * torque_change;
+        }
+        let x = &mut modes[ORDER - 1];
+        *x = N::low(*x) + self.single_transition * heads.0[ORDER - 1] + self.single_drive * torque_change;
+    }
+}
+
+impl<N: Number> Heads<N> {
+    #[inline(always)]
+    pub(crate) fn of(modes: &State<N>) -> Self {
+        Self(modes.map(N::narrow))
+    }
+
+    /// The modes at the instant itself.
+    #[inline(always)]
+    pub(crate) fn modes(&self) -> &[N; ORDER] {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn with(&self, torque_change: N) -> [N; ORDER + 1] {
+        let [a, b, c, d, e, f, g, h, i] = self.0;
+        [a, b, c, d, e, f, g, h, i, torque_change]
+    }
+}

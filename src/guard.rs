@@ -1,0 +1,64 @@
+//! Inputs as the law may take them: finite and inside their ranges.
+
+use crate::config::Range;
+use crate::faults::Faults;
+use crate::number::Number;
+use crate::signals::Input;
+use crate::units::Units;
+
+/// Largest inputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Law<N> {
+    radial_accel: N,
+    axial_accel: N,
+    rate: N,
+    torque: N,
+}
+
+impl<N: Number> Law<N> {
+    pub(crate) fn build(range: &Range, units: &Units) -> Self {
+        Self {
+            radial_accel: N::quantise(range.radial_accel_mps2, units.accel),
+            axial_accel: N::quantise(range.axial_accel_mps2, units.accel),
+            rate: N::quantise(range.rate_radps, units.rate),
+            torque: N::quantise(range.torque_nm, units.torque),
+        }
+    }
+
+    /// The row with each value clamped to its range, or replaced by the last good one where it is not a number.
+    #[inline(always)]
+    pub(crate) fn admit(&self, last: &Input<N>, row: &Input<N>, faults: &mut Faults) -> Input<N> {
+        // One branch for all six.
+        let within = row.accel_x_mps2.within(self.radial_accel)
+            & row.accel_y_mps2.within(self.radial_accel)
+            & row.accel_z_mps2.within(self.axial_accel)
+            & row.vehicle_rate_radps.within(self.rate)
+            & row.torque_nm.within(self.torque)
+            & row.spin_rate_radps.within(self.rate);
+        if within { *row } else { self.mend(last, row, faults) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn mend(&self, last: &Input<N>, row: &Input<N>, faults: &mut Faults) -> Input<N> {
+        let mut admit = |value: N, last: N, limit: N| {
+            if value.within(limit) {
+                value
+            } else if value.is_number() {
+                *faults |= Faults::INPUT_OUT_OF_RANGE;
+                if value > N::ZERO { limit } else { -limit }
+            } else {
+                *faults |= Faults::INPUT_NOT_FINITE;
+                last
+            }
+        };
+        Input {
+            accel_x_mps2: admit(row.accel_x_mps2, last.accel_x_mps2, self.radial_accel),
+            accel_y_mps2: admit(row.accel_y_mps2, last.accel_y_mps2, self.radial_accel),
+            accel_z_mps2: admit(row.accel_z_mps2, last.accel_z_mps2, self.axial_accel),
+            vehicle_rate_radps: admit(row.vehicle_rate_radps, last.vehicle_rate_radps, self.rate),
+            torque_nm: admit(row.torque_nm, last.torque_nm, self.torque),
+            spin_rate_radps: admit(row.spin_rate_radps, last.spin_rate_radps, self.rate),
+        }
+    }
+}

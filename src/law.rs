@@ -1,0 +1,150 @@
+//! The quantised, immutable law of one axis.
+
+use crate::build::modes::Modes;
+use crate::build::plant::Plant;
+use crate::config::{Config, Interpolation};
+use crate::error::BuildError;
+use crate::number::Number;
+use crate::row::Row;
+use crate::signals::{Input, Output};
+use crate::state::State;
+use crate::units::Units;
+use crate::{bearing, free, friction, guard, ins, stop};
+
+/// One axis, ready to step: built once from a [`Config`], never changed.
+///
+/// `N` is `f32` or [`Fixed`](crate::Fixed).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Law<N: Number> {
+    pub(crate) units: Units,
+    pub(crate) held_inputs: bool,
+    pub(crate) has_friction: bool,
+    pub(crate) cross_coupling: bool,
+    pub(crate) guard: guard::Law<N>,
+    pub(crate) unbalance: Row<N, 2>,
+    pub(crate) level: bearing::level::Law<N>,
+    pub(crate) friction: friction::Law<N>,
+    pub(crate) free: free::Law<N>,
+    pub(crate) stop: stop::Law<N>,
+    pub(crate) ins: ins::Law<N>,
+    /// phi' to the full scale of rates.
+    pub(crate) rate_shift: u32,
+    /// Torque that makes phi' jump by 1 over a period: `Jg / T`.
+    pub(crate) drift_torque: Row<N, 1>,
+    /// phi lost over a period to a drift of 1.
+    pub(crate) drift_angle: Row<N, 1>,
+    /// theta's full scale times the rates', over that of phi'.
+    pub(crate) drift_scale: Row<N, 1>,
+    pub(crate) largest_drift_torque: N,
+    pub(crate) small_angle: N,
+    pub(crate) identity: u32,
+}
+
+impl Config {
+    /// Builds the law of this axis.
+    ///
+    /// # Errors
+    /// The first field that is wrong, or the pole that makes the loop unstable.
+    pub fn build<N: Number>(&self) -> Result<Law<N>, BuildError> {
+        self.check()?;
+        let plant = Plant::new(self);
+        let modes = Modes::new(&plant)?;
+        let units = Units::new::<N>(self, &plant, &modes);
+        let period = self.period_s;
+        let range = &self.range;
+        Ok(Law {
+            held_inputs: self.interpolation == Interpolation::Held,
+            has_friction: self.bearing.count > 0,
+            cross_coupling: self.gyro.cross_coupling,
+            guard: guard::Law::build(range, &units),
+            unbalance: Row::build([-self.unbalance.y_kg_m, self.unbalance.x_kg_m], [units.accel; 2], units.torque),
+            level: bearing::level::Law::build(self, &units),
+            friction: friction::Law::build(self.bearing.slip_rate_radps, &units),
+            free: free::Law::build(&plant, &modes, &units, period),
+            stop: stop::Law::build(&plant, &units, self.gyro.stop_angle_rad, period),
+            ins: ins::Law::build(&units, range.radial_accel_mps2.max(range.axial_accel_mps2), period),
+            rate_shift: (units.rate - units.gimbal_rate).unsigned_abs(),
+            drift_torque: Row::build([plant.gimbal_inertia / period], [units.gimbal_rate], units.torque),
+            drift_angle: Row::build([-0.5 * period], [units.gimbal_rate], units.gimbal_angle),
+            drift_scale: Row::build([1.0], [units.gyro_angle + units.rate], units.gimbal_rate),
+            largest_drift_torque: N::quantise(range.torque_nm, units.torque),
+            small_angle: N::quantise(0.1, units.gimbal_angle),
+            identity: self.identity(N::TAG),
+            units,
+        })
+    }
+}
+
+impl<N: Number> Law<N> {
+    /// The state at rest, before the first row: everything zero.
+    #[must_use]
+    pub fn start(&self) -> State<N> {
+        State::new()
+    }
+
+    /// The state that has been steady under `row` for long: theta zero, the motor carrying the disturbance.
+    #[must_use]
+    pub fn settled(&self, row: Input<N>) -> State<N> {
+        let mut state = State::new();
+        let output = self.step(&mut state, row);
+        state.torque = output.friction_torque_nm + state.other_torque;
+        state
+    }
+
+    /// The full scales of inputs and outputs; all 1 for `f32`.
+    #[must_use]
+    pub fn units(&self) -> &Units {
+        &self.units
+    }
+
+    /// Velocity error so far, along x and y [m/s].
+    #[must_use]
+    pub fn velocity_error_mps(&self, state: &State<N>) -> [f64; 2] {
+        self.ins.velocity_error_mps(&state.ins.sums())
+    }
+
+    /// Position error so far, along x and y [m].
+    #[must_use]
+    pub fn position_error_m(&self, state: &State<N>) -> [f64; 2] {
+        self.ins.position_error_m(&state.ins.sums())
+    }
+
+    /// What phi has moved unseen by the gyro up to its last release [rad].
+    #[must_use]
+    pub fn residual_offset_rad(&self, state: &State<N>) -> f64 {
+        N::narrow(state.offset).to_f64(self.units.gimbal_angle)
+    }
+}
+
+impl Units {
+    /// A row in SI as the law's input.
+    #[must_use]
+    pub fn input<N: Number>(&self, si: &Input<f64>) -> Input<N> {
+        Input {
+            accel_x_mps2: N::quantise(si.accel_x_mps2, self.accel),
+            accel_y_mps2: N::quantise(si.accel_y_mps2, self.accel),
+            accel_z_mps2: N::quantise(si.accel_z_mps2, self.accel),
+            vehicle_rate_radps: N::quantise(si.vehicle_rate_radps, self.rate),
+            torque_nm: N::quantise(si.torque_nm, self.torque),
+            spin_rate_radps: N::quantise(si.spin_rate_radps, self.rate),
+        }
+    }
+
+    /// The law's output in SI.
+    #[must_use]
+    pub fn output<N: Number>(&self, output: &Output<N>) -> Output<f64> {
+        Output {
+            gimbal_angle_rad: output.gimbal_angle_rad.to_f64(self.gimbal_angle),
+            gimbal_rate_radps: output.gimbal_rate_radps.to_f64(self.gimbal_rate),
+            gyro_angle_rad: output.gyro_angle_rad.to_f64(self.gyro_angle),
+            motor_torque_nm: output.motor_torque_nm.to_f64(self.motor_torque),
+            friction_torque_nm: output.friction_torque_nm.to_f64(self.torque),
+            unbalance_torque_nm: output.unbalance_torque_nm.to_f64(self.torque),
+            disturbance_torque_nm: output.disturbance_torque_nm.to_f64(self.torque),
+            relative_rate_radps: output.relative_rate_radps.to_f64(self.rate),
+            stop: output.stop,
+            stop_change_age: output.stop_change_age.to_f64(0),
+            faults: output.faults,
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The two number systems of the flight code, behind one trait.
+//!
+//! Every signal of the law is a [`Number`]: an `f32` in SI units, or a [`Fixed`], a 32-bit fraction of a full scale
+//! `2^exponent` that is chosen for each signal when the law is built. A coefficient times a signal gives a
+//! [`Number::Wide`] value; sums are taken there, and [`Number::narrow`] alone rounds.
+//!
+//! Only IEEE `+ - * /`, comparisons, conversions and integer operations are used, so that the same inputs give the
+//! same bits on every host and target.
+
+mod fixed;
+mod float;
+
+pub use fixed::Fixed;
+
+use core::fmt::Debug;
+use core::ops::{Add, Mul, Neg, Sub};
+
+use crate::table::SqrtTable;
+
+/// A signal: `f32`, or [`Fixed`] with a full scale of its own.
+///
+/// Sealed: the law's error budget holds for these two.
+pub trait Number:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + sealed::Sealed
+    + 'static
+{
+    /// What a signal is multiplied by; for [`Fixed`] a fraction in -1..1.
+    type Coef: Copy + Debug + Default + PartialEq + Mul<Self, Output = Self::Wide>;
+    /// Sum of products; also holds a state that accumulates small increments.
+    type Wide: Copy + Debug + Default + PartialEq + Add<Output = Self::Wide> + Sub<Output = Self::Wide>;
+
+    /// Zero.
+    const ZERO: Self;
+    /// 1 in the full scale 2^0.
+    const ONE: Self;
+
+    /// Smallest mantissa of [`Number::hypot`].
+    const SQRT_LOWEST: f64;
+    /// Tag of the number system in saved states and in digests.
+    const TAG: u8;
+
+    /// The signal nearest below a sum of products, for [`Fixed`]; the sum itself for `f32`.
+    fn narrow(wide: Self::Wide) -> Self;
+    /// A sum times `2^shift`, saturated.
+    fn narrow_shifted(wide: Self::Wide, shift: u32) -> Self;
+    /// A sum times `2^shift`, with all its bits.
+    fn widen_shifted(wide: Self::Wide, shift: u32) -> Self::Wide;
+    /// The sum within -1..=1 of its full scale; `f32` has room.
+    fn confine(wide: Self::Wide) -> Self::Wide;
+    /// Whether a sum lies beyond 1 of its full scale.
+    fn is_full(wide: Self::Wide) -> bool;
+    /// What [`Number::decay_coef`] leaves of a state: all of it for `f32`, the bits below the signal for [`Fixed`].
+    fn low(wide: Self::Wide) -> Self::Wide;
+    /// The signal as a sum.
+    fn widen(self) -> Self::Wide;
+    /// Product; its full scale is the product of the two full scales.
+    #[must_use]
+    fn times(self, other: Self) -> Self;
+    /// `self / 2^shift`: the same value in a full scale `2^shift` times larger.
+    #[must_use]
+    fn shift_down(self, shift: u32) -> Self;
+    /// `self * 2^shift`, saturated: the same value in a full scale `2^shift` times smaller.
+    #[must_use]
+    fn shift_up(self, shift: u32) -> Self;
+    /// The same value in a full scale `2^-exponent` times as large, saturated.
+    #[must_use]
+    fn rescale(self, exponent: i32) -> Self {
+        let shift = exponent.unsigned_abs();
+        if exponent < 0 { self.shift_down(shift) } else { self.shift_up(shift) }
+    }
+    /// `self / divisor` in the full scale 2^0, for `|self| <= divisor`; saturates at 1 beyond.
+    #[must_use]
+    fn ratio(self, divisor: Self) -> Self;
+    /// Half of the value.
+    #[must_use]
+    fn half(self) -> Self;
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// Square root of the sum of two squares, for values below 0.7 of the full scale, to 2e-5.
+    #[must_use]
+    fn hypot(self, other: Self, table: &SqrtTable<Self>) -> Self;
+    /// Position of a positive value on the logarithmic grid of [`crate::table`]: sixteen steps an octave.
+    fn sixteenth(self) -> i32;
+    /// Smallest value at step `step` of that grid.
+    fn sixteenth_start(step: i32) -> Self;
+    /// Whether the value is a number within `-limit..=limit`.
+    fn within(self, limit: Self) -> bool;
+    /// Whether the value is finite.
+    fn is_number(self) -> bool;
+
+    /// A product of two signals as a whole number of counts, what is left over carried to the next call. One count is
+    /// `1 / scale` for `f32`, and 2^-31 of the product of the full scales for [`Fixed`].
+    fn count(left: Self, right: Self, scale: Self::Coef, carry: &mut Self) -> i32;
+
+    /// Exponent of the smallest full scale that holds `bound`; 0 for `f32`.
+    fn exponent(bound: f64) -> i32;
+    /// `value` as a signal of full scale `2^exponent`, saturated.
+    fn quantise(value: f64, exponent: i32) -> Self;
+    /// The value of a signal of full scale `2^exponent`.
+    fn to_f64(self, exponent: i32) -> f64;
+    /// `value * 2^exponent`: a factor between two full scales; `value` itself for `f32`.
+    fn rescaled(value: f64, exponent: i32) -> f64;
+    /// The coefficient c that makes `low(x) + c * narrow(x)` equal `(1 + change) x`.
+    fn decay_coef(change: f64) -> Self::Coef;
+    /// A coefficient.
+    fn coef(value: f64) -> Self::Coef;
+
+    /// The signal's bits, for saved states and digests.
+    fn to_bits(self) -> u32;
+    /// The signal with these bits.
+    fn from_bits(bits: u32) -> Self;
+    /// The sum's bits.
+    fn wide_to_bits(wide: Self::Wide) -> u64;
+    /// The sum with these bits.
+    fn wide_from_bits(bits: u64) -> Self::Wide;
+
+    /// The smaller of two.
+    #[must_use]
+    fn least(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    /// The larger of two.
+    #[must_use]
+    fn most(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for super::Fixed {}
+}

@@ -1,0 +1,173 @@
+//! `f32` as a [`Number`]: signals in SI units, every full scale 1.
+
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "quantisation to f32, and bits moved between words of known size"
+)]
+
+use super::Number;
+use crate::table::SqrtTable;
+
+const SIGN: u32 = 1 << 31;
+const EXPONENT_SHIFT: u32 = 23;
+const ONE_BITS: u32 = 127 << EXPONENT_SHIFT;
+
+impl Number for f32 {
+    type Coef = f32;
+    type Wide = f32;
+
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const SQRT_LOWEST: f64 = 1.0;
+    const TAG: u8 = b'f';
+
+    #[inline(always)]
+    fn narrow(wide: f32) -> f32 {
+        wide
+    }
+
+    #[inline(always)]
+    fn narrow_shifted(wide: f32, _shift: u32) -> f32 {
+        wide
+    }
+
+    #[inline(always)]
+    fn widen_shifted(wide: f32, _shift: u32) -> f32 {
+        wide
+    }
+
+    #[inline(always)]
+    fn confine(wide: f32) -> f32 {
+        wide
+    }
+
+    #[inline(always)]
+    fn is_full(wide: f32) -> bool {
+        !wide.within(1.0)
+    }
+
+    #[inline(always)]
+    fn low(wide: f32) -> f32 {
+        wide
+    }
+
+    #[inline(always)]
+    fn widen(self) -> f32 {
+        self
+    }
+
+    #[inline(always)]
+    fn times(self, other: f32) -> f32 {
+        self * other
+    }
+
+    #[inline(always)]
+    fn shift_down(self, _shift: u32) -> f32 {
+        self
+    }
+
+    #[inline(always)]
+    fn shift_up(self, _shift: u32) -> f32 {
+        self
+    }
+
+    #[inline(always)]
+    fn ratio(self, divisor: f32) -> f32 {
+        self / divisor
+    }
+
+    #[inline(always)]
+    fn half(self) -> f32 {
+        0.5 * self
+    }
+
+    #[inline(always)]
+    fn abs(self) -> f32 {
+        f32::from_bits(self.to_bits() & !SIGN)
+    }
+
+    /// With `s = m 4^k`, `1 <= m < 4`: the table's chord at m, times 2^k.
+    #[inline(always)]
+    fn hypot(self, other: f32, table: &SqrtTable<f32>) -> f32 {
+        let square = self * self + other * other;
+        // One added to the exponent makes its lowest bit the parity that m keeps.
+        let bits = square.to_bits() + (1 << EXPONENT_SHIFT);
+        let mantissa = f32::from_bits((bits & 0x00FF_FFFF) + ONE_BITS);
+        let power = f32::from_bits(((bits >> 24) + 63) << EXPONENT_SHIFT);
+        table.chord(bits >> 18, mantissa) * power
+    }
+
+    #[inline(always)]
+    fn sixteenth(self) -> i32 {
+        (self.to_bits() >> 19) as i32
+    }
+
+    #[inline(always)]
+    fn sixteenth_start(step: i32) -> f32 {
+        f32::from_bits((step as u32) << 19)
+    }
+
+    #[inline(always)]
+    fn within(self, limit: f32) -> bool {
+        // false for NaN
+        self.abs() <= limit
+    }
+
+    #[inline(always)]
+    fn is_number(self) -> bool {
+        self.is_finite()
+    }
+
+    #[inline(always)]
+    fn count(left: f32, right: f32, scale: f32, carry: &mut f32) -> i32 {
+        let exact = left * right * scale + *carry;
+        let whole = exact as i32;
+        // A whole f32 above 2^24 has no fraction to lose.
+        *carry = exact - whole as f32;
+        whole
+    }
+
+    fn exponent(_bound: f64) -> i32 {
+        0
+    }
+
+    fn quantise(value: f64, _exponent: i32) -> f32 {
+        value as f32
+    }
+
+    fn to_f64(self, _exponent: i32) -> f64 {
+        f64::from(self)
+    }
+
+    fn rescaled(value: f64, _exponent: i32) -> f64 {
+        value
+    }
+
+    fn decay_coef(change: f64) -> f32 {
+        Self::coef(change)
+    }
+
+    fn coef(value: f64) -> f32 {
+        value as f32
+    }
+
+    #[inline(always)]
+    fn to_bits(self) -> u32 {
+        f32::to_bits(self)
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u32) -> f32 {
+        f32::from_bits(bits)
+    }
+
+    fn wide_to_bits(wide: f32) -> u64 {
+        u64::from(wide.to_bits())
+    }
+
+    fn wide_from_bits(bits: u64) -> f32 {
+        f32::from_bits(bits as u32)
+    }
+}

@@ -1,0 +1,248 @@
+//! A state as bytes: little-endian, versioned, bound to its law, protected by a checksum.
+//!
+//! | bytes | content |
+//! |---|---|
+//! | 4 | `GSS1` |
+//! | 1 | number system |
+//! | 4 | identity of the law |
+//! | 3 | flags: started, offset left; stop |
+//! | 4 each | signals, in the order of [`State`]'s fields |
+//! | 8 each | accumulating states |
+//! | 64 | INS sums |
+//! | 4 | checksum of all before |
+
+use core::fmt;
+
+use crate::digest::Digest;
+use crate::law::Law;
+use crate::number::Number;
+use crate::signals::Stop;
+use crate::state::State;
+
+const MAGIC: [u8; 4] = *b"GSS1";
+
+/// Length of a saved state in bytes.
+pub const SAVED_LEN: usize = 12 + 13 * 4 + 18 * 8 + 2 * 4 + 2 * 4 + 2 * 8 + 2 * 16 + 4;
+
+/// A state as bytes.
+pub type Saved = [u8; SAVED_LEN];
+
+/// Why bytes are not a state of this law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RestoreError {
+    /// The bytes do not begin as a saved state does.
+    NotAState,
+    /// The checksum does not fit the bytes.
+    Damaged,
+    /// The state was saved by another number system.
+    OtherNumberSystem,
+    /// The state was saved by a law of other parameters.
+    OtherLaw,
+    /// A value is not finite or does not exist.
+    Impossible,
+}
+
+impl fmt::Display for RestoreError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotAState => "these bytes are not a saved state",
+            Self::Damaged => "the saved state is damaged: its checksum does not fit",
+            Self::OtherNumberSystem => "the state was saved by the other number system",
+            Self::OtherLaw => "the state was saved by a law with other parameters",
+            Self::Impossible => "the saved state holds a value that no step can produce",
+        })
+    }
+}
+
+impl core::error::Error for RestoreError {}
+
+impl<N: Number> Law<N> {
+    /// The state as bytes.
+    #[must_use]
+    pub fn save(&self, state: &State<N>) -> Saved {
+        let mut bytes = [0; SAVED_LEN];
+        let mut codec = Writer { rest: &mut bytes };
+        codec.put(&MAGIC);
+        codec.put(&[N::TAG]);
+        codec.put(&self.identity.to_le_bytes());
+        let stop = match state.stop {
+            Stop::Free => 0,
+            Stop::Positive => 1,
+            Stop::Negative => 2,
+        };
+        codec.put(&[u8::from(state.started), u8::from(state.offset_left), stop]);
+        // Walking a copy keeps the order of fields in one place.
+        let mut copy = *state;
+        walk(&mut copy, &mut codec);
+        let check = checksum(&bytes);
+        bytes[SAVED_LEN - 4..].copy_from_slice(&check);
+        bytes
+    }
+
+    /// The state that was saved.
+    ///
+    /// # Errors
+    /// The bytes are damaged, foreign, or were saved by another law.
+    pub fn restore(&self, bytes: &Saved) -> Result<State<N>, RestoreError> {
+        if bytes[..4] != MAGIC {
+            return Err(RestoreError::NotAState);
+        }
+        if bytes[SAVED_LEN - 4..] != checksum(bytes) {
+            return Err(RestoreError::Damaged);
+        }
+        let mut reader = Reader { rest: &bytes[4..], impossible: false };
+        if reader.take::<1>() != [N::TAG] {
+            return Err(RestoreError::OtherNumberSystem);
+        }
+        if reader.take::<4>() != self.identity.to_le_bytes() {
+            return Err(RestoreError::OtherLaw);
+        }
+        let [started, offset_left, stop] = reader.take::<3>();
+        let mut state = self.start();
+        state.started = started == 1;
+        state.offset_left = offset_left == 1;
+        state.stop = match stop {
+            0 => Stop::Free,
+            1 => Stop::Positive,
+            2 => Stop::Negative,
+            _ => return Err(RestoreError::Impossible),
+        };
+        walk(&mut state, &mut reader);
+        if reader.impossible || started > 1 || offset_left > 1 { Err(RestoreError::Impossible) } else { Ok(state) }
+    }
+}
+
+/// What happens to each field in turn.
+trait Codec {
+    fn bytes<const L: usize>(&mut self, bytes: &mut [u8; L]);
+    fn reject(&mut self);
+
+    fn signal<N: Number>(&mut self, signal: &mut N) {
+        let mut bytes = signal.to_bits().to_le_bytes();
+        self.bytes(&mut bytes);
+        *signal = N::from_bits(u32::from_le_bytes(bytes));
+        if !signal.is_number() {
+            self.reject();
+        }
+    }
+
+    fn wide<N: Number>(&mut self, wide: &mut N::Wide) {
+        let mut bytes = N::wide_to_bits(*wide).to_le_bytes();
+        self.bytes(&mut bytes);
+        *wide = N::wide_from_bits(u64::from_le_bytes(bytes));
+        if !N::narrow(*wide).is_number() {
+            self.reject();
+        }
+    }
+}
+
+/// Every field but the flags, in order.
+fn walk<N: Number>(state: &mut State<N>, codec: &mut impl Codec) {
+    let row = &mut state.row;
+    for signal in [
+        &mut row.accel_x_mps2,
+        &mut row.accel_y_mps2,
+        &mut row.accel_z_mps2,
+        &mut row.vehicle_rate_radps,
+        &mut row.torque_nm,
+        &mut row.spin_rate_radps,
+        &mut state.friction_level,
+        &mut state.other_torque,
+        &mut state.torque,
+        &mut state.gyro_angle,
+        &mut state.gimbal_rate,
+        &mut state.relative_rate,
+        &mut state.drift,
+    ] {
+        codec.signal(signal);
+    }
+    codec.wide::<N>(&mut state.offset);
+    for mode in &mut state.free {
+        codec.wide::<N>(mode);
+    }
+    codec.wide::<N>(&mut state.held.integrator);
+    for lag in &mut state.held.lags {
+        codec.wide::<N>(lag);
+    }
+    codec.wide::<N>(&mut state.held.gimbal_rate);
+    codec.wide::<N>(&mut state.held.gimbal_angle);
+    state.ins.walk(codec);
+}
+
+impl<N: Number> crate::ins::State<N> {
+    fn walk(&mut self, codec: &mut impl Codec) {
+        let (carry, last, sums) = self.parts();
+        for carry in carry {
+            codec.signal(carry);
+        }
+        for last in last {
+            let mut bytes = last.to_le_bytes();
+            codec.bytes(&mut bytes);
+            *last = i32::from_le_bytes(bytes);
+        }
+        for velocity in &mut sums.velocity {
+            let mut bytes = velocity.to_le_bytes();
+            codec.bytes(&mut bytes);
+            *velocity = i64::from_le_bytes(bytes);
+        }
+        for position in &mut sums.position {
+            let mut bytes = position.to_le_bytes();
+            codec.bytes(&mut bytes);
+            *position = i128::from_le_bytes(bytes);
+        }
+    }
+}
+
+struct Writer<'a> {
+    rest: &'a mut [u8],
+}
+
+impl Writer<'_> {
+    fn put(&mut self, bytes: &[u8]) {
+        let rest = core::mem::take(&mut self.rest);
+        // SAVED_LEN is the sum of all fields; a short buffer would drop bytes, which the round trip's test shows.
+        let (head, tail) = rest.split_at_mut(bytes.len().min(rest.len()));
+        head.copy_from_slice(&bytes[..head.len()]);
+        self.rest = tail;
+    }
+}
+
+impl Codec for Writer<'_> {
+    fn bytes<const L: usize>(&mut self, bytes: &mut [u8; L]) {
+        self.put(bytes);
+    }
+    fn reject(&mut self) {}
+}
+
+struct Reader<'a> {
+    rest: &'a [u8],
+    impossible: bool,
+}
+
+impl Reader<'_> {
+    fn take<const L: usize>(&mut self) -> [u8; L] {
+        if let Some((head, tail)) = self.rest.split_first_chunk::<L>() {
+            self.rest = tail;
+            *head
+        } else {
+            self.impossible = true;
+            [0; L]
+        }
+    }
+}
+
+impl Codec for Reader<'_> {
+    fn bytes<const L: usize>(&mut self, bytes: &mut [u8; L]) {
+        *bytes = self.take();
+    }
+    fn reject(&mut self) {
+        self.impossible = true;
+    }
+}
+
+fn checksum(bytes: &Saved) -> [u8; 4] {
+    let mut digest = Digest::default();
+    digest.add(&bytes[..SAVED_LEN - 4]);
+    digest.folded().to_le_bytes()
+}

@@ -1,0 +1,57 @@
+//! The memory of one axis between two steps.
+
+use crate::ins;
+use crate::number::Number;
+use crate::signals::{Input, Stop};
+use crate::{free, stop};
+
+/// Everything that a step remembers: plain data, copied freely, saved and restored as bytes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<N: Number> {
+    /// Whether a first row has come.
+    pub(crate) started: bool,
+    /// Whether the gyro has ever left a stop.
+    pub(crate) offset_left: bool,
+    pub(crate) stop: Stop,
+    /// The last row as admitted.
+    pub(crate) row: Input<N>,
+    /// Friction level and other disturbance torques at the last row.
+    pub(crate) friction_level: N,
+    pub(crate) other_torque: N,
+    /// Disturbance torque that acted over the last period.
+    pub(crate) torque: N,
+    pub(crate) gyro_angle: N,
+    pub(crate) gimbal_rate: N,
+    /// The bearing's rate at the last row.
+    pub(crate) relative_rate: N,
+    /// theta times the spin-axis rate at the last row, with cross coupling.
+    pub(crate) drift: N,
+    /// What phi has moved unseen by the gyro, while the gyro is free.
+    pub(crate) offset: N::Wide,
+    pub(crate) free: free::State<N>,
+    pub(crate) held: stop::State<N>,
+    pub(crate) ins: ins::State<N>,
+}
+
+impl<N: Number> State<N> {
+    /// At rest, no row yet.
+    pub(crate) fn new() -> Self {
+        Self {
+            started: false,
+            offset_left: false,
+            stop: Stop::Free,
+            row: Input::default(),
+            friction_level: N::ZERO,
+            other_torque: N::ZERO,
+            torque: N::ZERO,
+            gyro_angle: N::ZERO,
+            gimbal_rate: N::ZERO,
+            relative_rate: N::ZERO,
+            drift: N::ZERO,
+            offset: N::Wide::default(),
+            free: free::State::<N>::default(),
+            held: stop::State::default(),
+            ins: ins::State::default(),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Functions of one variable as chords over a logarithmic grid, for the step.
+//!
+//! A segment is found from the value's own binary exponent and leading bits, without a search, a division or a
+//! logarithm; its chord needs one product. For `f(x) = x^p` a chord over a sixteenth of an octave is off by at most
+//! `|p (p - 1)| / 8 / 16^2` of f: 1.1e-4 for p = 0.33 and p = 2/3.
+
+use crate::number::Number;
+
+/// A chord: `offset + slope * x`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Chord<N: Number> {
+    offset: N,
+    slope: N::Coef,
+}
+
+/// Octaves that a [`PowerTable`] covers; below them it goes on along the lowest chord.
+const OCTAVES: i32 = 6;
+const CHORDS: usize = 16 * OCTAVES.unsigned_abs() as usize;
+
+/// A rising concave function on the six octaves below a largest argument.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PowerTable<N: Number> {
+    first: i32,
+    chords: [Chord<N>; CHORDS],
+}
+
+impl<N: Number> PowerTable<N> {
+    /// Tabulates `function` up to `largest`, both in SI; arguments and values have the full scales `2^from` and `2^to`.
+    pub(crate) fn build(largest: f64, from: i32, to: i32, function: impl Fn(f64) -> f64) -> Self {
+        let first = N::quantise(largest, from).sixteenth() + 1 - 16 * OCTAVES;
+        let mut chords = [Chord::default(); CHORDS];
+        for (chord, step) in chords.iter_mut().zip(first..) {
+            let left = N::sixteenth_start(step).to_f64(from);
+            let right = N::sixteenth_start(step + 1).to_f64(from);
+            let slope = if right > left { (function(right) - function(left)) / (right - left) } else { 0.0 };
+            *chord = Chord {
+                offset: N::quantise(function(left) - slope * left, to),
+                slope: N::coef(libm::ldexp(slope, from - to)),
+            };
+        }
+        Self { first, chords }
+    }
+
+    /// The function's value. In fixed point `to` must be a full scale in which every slope is below 1.
+    pub(crate) fn at(&self, argument: N) -> N {
+        let segment = (argument.sixteenth() - self.first).max(0).unsigned_abs() as usize;
+        let chord = &self.chords[segment.min(CHORDS - 1)];
+        chord.offset + N::narrow(chord.slope * argument)
+    }
+}
+
+/// Square root of a mantissa of two octaves, 32 chords each, to 3.1e-5.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SqrtTable<N: Number> {
+    chords: [Chord<N>; 64],
+}
+
+impl<N: Number> SqrtTable<N> {
+    /// `lowest` is the smallest mantissa: 1 for `f32`, 1/4 for `Fixed`.
+    pub(crate) fn build() -> Self {
+        let mut chords = [Chord::default(); 64];
+        for (segment, chord) in chords.iter_mut().enumerate() {
+            let octave = if segment < 32 { N::SQRT_LOWEST } else { 2.0 * N::SQRT_LOWEST };
+            let left = octave * (1.0 + (segment % 32) as f64 / 32.0);
+            let right = left + octave / 32.0;
+            let slope = 1.0 / (libm::sqrt(left) + libm::sqrt(right));
+            *chord = Chord { offset: N::quantise(libm::sqrt(left) - slope * left, 0), slope: N::coef(slope) };
+        }
+        Self { chords }
+    }
+
+    /// The chord of `segment` (its lowest six bits) at `mantissa`.
+    #[inline(always)]
+    pub(crate) fn chord(&self, segment: u32, mantissa: N) -> N {
+        let chord = &self.chords[(segment & 63) as usize];
+        chord.offset + N::narrow(chord.slope * mantissa)
+    }
+}

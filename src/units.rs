@@ -1,0 +1,87 @@
+//! Full scales of the signals: how SI values become numbers of the law, once, when it is built.
+
+use crate::Config;
+use crate::build::modes::{ANGLE, GIMBAL_RATE, INTEGRATOR, LAG, Modes, PHYSICAL, RATE};
+use crate::build::plant::{LAGS, Plant};
+use crate::build::poles::ORDER;
+use crate::number::Number;
+
+/// Exponents of the full scales; all 0 for `f32`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Units {
+    /// Specific force, of 1 m/s2.
+    pub accel: i32,
+    /// Vehicle and spin-axis rates, of 1 rad/s.
+    pub rate: i32,
+    /// Disturbance torques, of 1 N m.
+    pub torque: i32,
+    /// phi, of 1 rad.
+    pub gimbal_angle: i32,
+    /// phi', of 1 rad/s.
+    pub gimbal_rate: i32,
+    /// theta, of 1 rad.
+    pub gyro_angle: i32,
+    /// `T_m`, of 1 N m.
+    pub motor_torque: i32,
+    pub(crate) modes: [i32; ORDER],
+    pub(crate) lags: [i32; LAGS],
+}
+
+impl Units {
+    pub(crate) fn new<N: Number>(config: &Config, plant: &Plant, modes: &Modes) -> Self {
+        let range = &config.range;
+        let accel = N::exponent(range.radial_accel_mps2.max(range.axial_accel_mps2));
+        let largest_accel = libm::ldexp(1.0, N::exponent(range.radial_accel_mps2.max(range.axial_accel_mps2)));
+        let friction =
+            config.bearing.friction_level_nm(range.radial_accel_mps2, range.axial_accel_mps2, range.rate_radps);
+        let unbalance = (config.unbalance.x_kg_m.abs() + config.unbalance.y_kg_m.abs()) * largest_accel;
+        let drift = if config.gyro.cross_coupling { range.torque_nm } else { 0.0 };
+        let largest_torque = friction + unbalance + range.torque_nm + drift;
+
+        let bounds = modes.bounds().map(|bound| bound * largest_torque);
+        let torque = N::exponent(2.0 * largest_torque);
+        // A coefficient is a fraction: a mode's full scale also holds what the torque's full scale drives.
+        let drive = modes.drive(config.period_s).map(|factor| N::exponent(N::rescaled(factor.abs(), torque)));
+        let mut mode_scales: [i32; ORDER] = core::array::from_fn(|i| N::exponent(bounds[i]).max(drive[i]));
+        for pair in mode_scales.chunks_exact_mut(2) {
+            pair.fill(pair[0].max(pair[1]));
+        }
+        let reach = |row: [f64; ORDER]| row.iter().zip(&bounds).map(|(factor, bound)| (factor * bound).abs()).sum();
+        let gimbal_rate: f64 = reach(modes.row(|s| plant.gimbal_rate_of(s)));
+        let motor_torque: f64 = reach(modes.row(|s| plant.motor_torque_of(s)));
+        // theta' of a few rad/s: beyond, the gyro crosses from stop to stop within a few periods.
+        let fastest_gyro = 4.0;
+        let gimbal_rate = N::exponent(gimbal_rate.max(1.0));
+        Self {
+            accel,
+            // the difference of two rates must fit
+            rate: N::exponent(2.0 * range.rate_radps).max(gimbal_rate),
+            // the change of a torque must fit
+            torque,
+            gimbal_angle: N::exponent(0.9),
+            gimbal_rate,
+            gyro_angle: N::exponent(8.0 * config.gyro.stop_angle_rad),
+            motor_torque: N::exponent(motor_torque + 2.0 * largest_torque),
+            modes: mode_scales,
+            lags: core::array::from_fn(|i| {
+                N::exponent((fastest_gyro * plant.lag_gains[i] / plant.lags[i]).abs().max(0.1 * largest_torque))
+            }),
+        }
+    }
+
+    /// Full scales of a physical state.
+    pub(crate) fn physical(&self) -> [i32; PHYSICAL] {
+        let mut scales = [self.motor_torque; PHYSICAL];
+        debug_assert_eq!(INTEGRATOR, 0);
+        scales[LAG..ANGLE].copy_from_slice(&self.lags);
+        scales[ANGLE] = self.gyro_angle;
+        scales[RATE] = self.gyro_rate();
+        scales[GIMBAL_RATE] = self.gimbal_rate;
+        scales
+    }
+
+    /// theta', of 1 rad/s.
+    pub(crate) fn gyro_rate(&self) -> i32 {
+        self.gyro_angle
+    }
+}
