@@ -3,9 +3,11 @@
 //! Exit status: 0 all passed, 1 a check failed, 2 the call is wrong, 3 something needed is missing and cannot be
 //! installed from here.
 
+mod elf;
 mod host;
 mod shell;
 mod stages;
+mod target;
 
 use anyhow::Result;
 use stages::{Missing, Stages};

@@ -2,7 +2,7 @@
 //!
 //! A failed stage does not stop the later ones: one run shows everything that is wrong.
 
-use crate::host;
+use crate::{host, target};
 use anyhow::Result;
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -40,6 +40,10 @@ impl Stages {
             Stage { name: "lints", run: host::lints::check },
             Stage { name: "documents", run: host::documents::check },
             Stage { name: "oldest-rust", run: host::oldest_rust::check },
+            Stage { name: "target-setup", run: target::setup::check },
+            Stage { name: "target-lints", run: target::lints::check },
+            Stage { name: "target-counter", run: target::calibration::check },
+            Stage { name: "target-addresses", run: target::addresses::check },
             Stage { name: "tests", run: host::tests::run },
         ])
     }
