@@ -1,7 +1,9 @@
 //! Friction on the gimbal, and the zones of the rate in which its law is smooth.
 
 use crate::bearing::Bearings;
-use crate::row::Row;
+use crate::effects::Laws;
+use crate::system::Moment;
+use crate::vector::{RELATIVE, Vector};
 
 /// A stretch of `w_rel` in which the friction law has no corner.
 #[derive(Debug, Clone, Copy)]
@@ -59,10 +61,27 @@ impl Zones {
     }
 }
 
-/// `T_f = (T_load + T_visc) * clamp(w_rel / w_s, -1, 1)` [N m], the formula of the zone continued beyond its ends.
-pub(crate) fn torque_nm(bearings: &Bearings, zone: &Zone, row: &Row, relative_rate_radps: f64) -> f64 {
-    let load = bearings.load_torque_nm(row);
-    let viscous = bearings.viscous_torque_nm(relative_rate_radps.abs(), zone.fast);
-    let direction = if zone.slips { zone.sign } else { relative_rate_radps / bearings.slip_rate_radps() };
-    (load + viscous) * direction
+impl Zone {
+    /// `clamp(w_rel / w_s, -1, 1)`, the formula of the zone continued beyond its ends.
+    fn direction(&self, bearings: &Bearings, relative_rate_radps: f64) -> f64 {
+        if self.slips { self.sign } else { relative_rate_radps / bearings.slip_rate_radps() }
+    }
+}
+
+/// `T_f` [N m]: Palmgren's torque under the clamp, and the effects of block `friction`.
+pub(crate) fn torque_nm(bearings: &Bearings, laws: &Laws, zone: &Zone, moment: &Moment, y: &Vector) -> f64 {
+    let rate = moment.relative_rate_radps(y);
+    let drag = laws.drag.torque_nm(rate);
+    if !bearings.present() {
+        return drag;
+    }
+    let load = bearings.load_torque_nm(moment.row) * laws.scales.load(moment.row);
+    let viscous = bearings.viscous_torque_nm(rate.abs(), zone.fast);
+    let excess = laws.stribeck.map_or(0.0, |stribeck| stribeck.level_nm(rate));
+    let direction = match laws.presliding {
+        Some(presliding) => presliding.ratio(&moment.mode.reversal, zone.sign, y[RELATIVE]),
+        None => zone.direction(bearings, rate),
+    };
+    let drift = laws.drift.map_or(1.0, |drift| drift.factor(moment.time_s));
+    (load + viscous + excess) * direction * laws.scales.direction(zone.sign) * drift + drag
 }

@@ -2,16 +2,20 @@
 //!
 //! - *float*: free, theta between the stops; on a stop, the torque that holds the float there.
 //! - *rate*: `w_rel` within the zone of the friction law.
+//! - *command*: the motor's command within one stretch of clamp and dead zone.
+//! - *cell*: theta within one step of the pick-off.
 
-use crate::row::Row;
+use crate::effects::pickoff_quantisation;
+use crate::effects::presliding::Reversal;
 use crate::state::{Mode, State, Stop, StopEvent, StopEventKind};
-use crate::system::System;
-use crate::vector::{THETA, THETA_RATE, Vector};
+use crate::system::{Moment, System};
+use crate::vector::{RELATIVE, THETA, THETA_RATE, Vector};
 
 /// Number of guards.
-pub(crate) const GUARDS: usize = 2;
+pub(crate) const GUARDS: usize = 4;
 const FLOAT: usize = 0;
 const RATE: usize = 1;
+const COMMAND: usize = 2;
 
 /// Size below which a signal counts as being on the edge of its band: what rounding and location leave over.
 const EDGE_RAD: f64 = 1e-14;
@@ -54,46 +58,87 @@ impl Guard {
 
 impl System {
     /// Every guard of the mode, in fixed order.
-    pub(crate) fn guards(&self, mode: &Mode, row: &Row, y: &Vector) -> [Guard; GUARDS] {
-        let stop = self.config.gyro.stop_angle_rad;
-        let float = match mode.stop {
-            Stop::Free => Guard { value: y[THETA], low: -stop, high: stop, edge: EDGE_RAD },
-            side => Guard { value: side.sign() * self.float_nm(row, y), low: 0.0, high: f64::INFINITY, edge: EDGE_NM },
-        };
+    pub(crate) fn guards(&self, moment: &Moment, y: &Vector) -> [Guard; GUARDS] {
+        let mode = moment.mode;
         let zone = self.zones.at(mode.zone);
-        let value = Self::relative_rate_radps(row, y);
-        [float, Guard { value, low: zone.low_radps, high: zone.high_radps, edge: EDGE_RADPS }]
+        let rate = moment.relative_rate_radps(y);
+        let stretch = &self.stretches[mode.stretch];
+        let step = self.laws.pickoff_step_rad;
+        let half = if step > 0.0 { 0.5 * step } else { f64::INFINITY };
+        let centre = step * mode.cell;
+        [
+            self.float_guard(moment, y),
+            Guard { value: rate, low: zone.low_radps, high: zone.high_radps, edge: EDGE_RADPS },
+            Guard { value: moment.command_nm, low: stretch.low_nm, high: stretch.high_nm, edge: EDGE_NM },
+            Guard { value: y[THETA], low: centre - half, high: centre + half, edge: EDGE_RAD },
+        ]
+    }
+
+    fn float_guard(&self, moment: &Moment, y: &Vector) -> Guard {
+        let stop = self.config.gyro.stop_angle_rad;
+        match moment.mode.stop {
+            Stop::Free => Guard { value: y[THETA], low: -stop, high: stop, edge: EDGE_RAD },
+            side => {
+                let holding = side.sign() * self.float_nm(moment.row, y);
+                Guard { value: holding, low: 0.0, high: f64::INFINITY, edge: EDGE_NM }
+            }
+        }
     }
 
     /// Enters the mode beyond an exit.
-    pub(crate) fn cross(&self, exit: Exit, row: &Row, time_s: f64, state: &mut State) {
+    pub(crate) fn cross(&self, exit: Exit, moment: &Moment, state: &mut State) {
+        let next = |index: usize| if exit.upward { index + 1 } else { index - 1 };
         match exit.guard {
             FLOAT if state.mode.stop == Stop::Free => {
                 let side = if exit.upward { Stop::Positive } else { Stop::Negative };
-                self.contact(side, row, time_s, state);
+                self.contact(side, moment, state);
             }
-            FLOAT => release(time_s, state),
-            RATE if exit.upward => state.mode.zone += 1,
-            _ => state.mode.zone -= 1,
+            FLOAT => release(moment.time_s, state),
+            RATE => self.change_zone(next(state.mode.zone), &state.y, &mut state.mode),
+            COMMAND => state.mode.stretch = next(state.mode.stretch),
+            _ => state.mode.cell += if exit.upward { 1.0 } else { -1.0 },
         }
     }
 
-    /// Takes up the branches that hold under a row: inputs may have jumped.
-    pub(crate) fn enter(&self, row: &Row, time_s: f64, state: &mut State) {
-        state.mode.zone = self.zones.find(Self::relative_rate_radps(row, &state.y));
-        if state.mode.stop != Stop::Free && self.guards(&state.mode, row, &state.y)[FLOAT].left().is_some() {
-            release(time_s, state);
+    /// The branches that hold at a moment, whatever held before.
+    pub(crate) fn branches(&self, moment: &Moment, y: &Vector) -> Mode {
+        let mut mode = *moment.mode;
+        self.change_zone(self.zones.find(moment.relative_rate_radps(y)), y, &mut mode);
+        let last = self.stretches.len() - 1;
+        mode.stretch = self.stretches.iter().position(|stretch| moment.command_nm <= stretch.high_nm).unwrap_or(last);
+        mode.cell = pickoff_quantisation::cell(self.laws.pickoff_step_rad, y[THETA]);
+        mode
+    }
+
+    /// Takes up the branches that hold now: inputs may have jumped.
+    pub(crate) fn enter(&self, moment: &Moment, state: &mut State) {
+        state.mode = self.branches(moment, &state.y);
+        if state.mode.stop != Stop::Free && self.float_guard(moment, &state.y).left().is_some() {
+            release(moment.time_s, state);
         }
+    }
+
+    /// A change of sign is a reversal, which presliding friction remembers.
+    fn change_zone(&self, zone: usize, y: &Vector, mode: &mut Mode) {
+        if let Some(presliding) = self.laws.presliding {
+            let (from, to) = (self.zones.at(mode.zone).sign, self.zones.at(zone).sign);
+            if from * to < 0.0 {
+                let ratio = presliding.ratio(&mode.reversal, from, y[RELATIVE]);
+                mode.reversal = Reversal { ratio, relative_rad: y[RELATIVE] };
+            }
+        }
+        mode.zone = zone;
     }
 
     /// The float loses its rate on the stop, and leaves at once if the torque points away.
-    fn contact(&self, side: Stop, row: &Row, time_s: f64, state: &mut State) {
+    fn contact(&self, side: Stop, moment: &Moment, state: &mut State) {
         state.y[THETA] = side.sign() * self.config.gyro.stop_angle_rad;
         state.y[THETA_RATE] = 0.0;
         state.mode.stop = side;
-        state.events.push(StopEvent { time_s, kind: StopEventKind::Contact, side });
-        if self.guards(&state.mode, row, &state.y)[FLOAT].left().is_some() {
-            release(time_s, state);
+        state.events.push(StopEvent { time_s: moment.time_s, kind: StopEventKind::Contact, side });
+        let moment = Moment { mode: &state.mode.clone(), ..*moment };
+        if self.float_guard(&moment, &state.y).left().is_some() {
+            release(moment.time_s, state);
         }
     }
 }

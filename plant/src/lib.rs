@@ -20,6 +20,8 @@
 
 mod advance;
 mod bearing;
+mod crossing;
+mod effects;
 mod friction;
 mod guard;
 mod plant;
@@ -32,7 +34,8 @@ mod system;
 mod tableau;
 mod vector;
 
+pub use effects::{Block, Bound, Effect, EffectError, Parameter};
 pub use plant::Plant;
 pub use row::{Between, Row};
-pub use sample::Sample;
+pub use sample::{Logged, Sample};
 pub use state::{State, Stop, StopEvent, StopEventKind};

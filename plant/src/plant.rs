@@ -2,12 +2,14 @@
 
 use gimbal_servo::{BuildError, Config};
 
-use crate::advance;
+use crate::advance::Advance;
+use crate::effects::loop_delay::Past;
+use crate::effects::{Altered, Effect, EffectError, Laws, pickoff_quantisation};
 use crate::row::{Between, Interval, Row};
-use crate::sample::Sample;
-use crate::state::State;
-use crate::system::System;
-use crate::vector::{PHI, PHI_RATE, POSITION, RELATIVE, THETA, THETA_RATE, TORQUE, VELOCITY};
+use crate::sample::{Logged, Sample};
+use crate::state::{Mode, State};
+use crate::system::{Moment, System};
+use crate::vector::{N, PHI, PHI_RATE, POSITION, RELATIVE, THETA, THETA_RATE, VELOCITY};
 
 /// Local error of each step, relative to the peak of each quantity so far: runs come out at 1e-10 to 1e-11 of it.
 const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -28,7 +30,22 @@ impl Plant {
     pub fn new(config: &Config) -> Result<Self, BuildError> {
         config.check()?;
         let between = Between::from(config.interpolation);
-        Ok(Self { system: System::new(config), tolerance: DEFAULT_TOLERANCE, between })
+        let altered = Altered { config: *config, laws: Laws::default() };
+        Ok(Self { system: System::new(&altered), tolerance: DEFAULT_TOLERANCE, between })
+    }
+
+    /// The plant with one effect more; `values` in the order of [`Effect::parameters`].
+    ///
+    /// Effects add up; one that is given twice adds to itself where it is a plain coefficient or change, and is
+    /// replaced otherwise.
+    ///
+    /// # Errors
+    /// A wrong number of values, a value without meaning, or a configuration that is wrong with the effect.
+    pub fn with_effect(&self, effect: Effect, values: &[f64]) -> Result<Self, EffectError> {
+        let mut altered = Altered { config: self.system.config, laws: self.system.laws };
+        effect.apply(values, &mut altered)?;
+        altered.config.check()?;
+        Ok(Self { system: System::new(&altered), ..self.clone() })
     }
 
     /// Sets the local error of a step, relative to the peak of each quantity so far.
@@ -54,43 +71,71 @@ impl Plant {
     /// Everything zero.
     #[must_use]
     pub fn start(&self) -> State {
-        State::zero(self.system.floor())
+        State::new([0.0; N], Mode::default(), self.system.floor(), self.system.past_s())
     }
 
     /// Steady under a row: phi and theta zero, the servo carrying the disturbance.
     #[must_use]
     pub fn settled(&self, row: &Row) -> State {
-        let mut state = self.start();
-        state.y = self.system.settled(row);
-        state.note_peaks();
-        state
+        let (y, mode) = self.system.settled(row);
+        State::new(y, mode, self.system.floor(), self.system.past_s())
     }
 
     /// Advances one period, from `previous` to `row`, and samples at `row`.
     pub fn step(&self, state: &mut State, previous: &Row, row: &Row) -> Sample {
-        let interval = Interval::new(previous, row, self.period_s(), self.between);
-        advance::over(&self.system, self.tolerance, &interval, self.time_s(state), state);
-        self.sample(state, &interval.at(self.period_s()))
+        let interval = &Interval::new(previous, row, self.period_s(), self.between);
+        let start_s = self.time_s(state);
+        Advance { system: &self.system, interval, start_s, tolerance: self.tolerance }.run(state);
+        state.rows.keep(previous, self.system.laws.measurement.skew_s, self.period_s());
+        self.sample_under(state, &interval.at(self.period_s()), row)
     }
 
     /// The sample of a state under a row.
     #[must_use]
     pub fn sample(&self, state: &State, row: &Row) -> Sample {
-        let y = &state.y;
-        let zone = self.system.zones.find(System::relative_rate_radps(row, y));
+        self.sample_under(state, row, row)
+    }
+
+    /// `acting` is what acts at the end of the interval, `row` what the sensors find there.
+    fn sample_under(&self, state: &State, acting: &Row, row: &Row) -> Sample {
+        let (system, y, time_s) = (&self.system, &state.y, self.time_s(state));
+        let command_nm = system.command_nm(state.past.as_ref(), time_s, y);
+        let before = Moment { row: acting, time_s, mode: &state.mode, command_nm };
+        let mode = system.branches(&before, y);
+        let moment = Moment { mode: &mode, ..before };
         Sample {
-            time_s: self.time_s(state),
+            time_s,
             gimbal_angle_rad: y[PHI],
             gimbal_rate_radps: y[PHI_RATE],
             gyro_angle_rad: y[THETA],
             gyro_rate_radps: y[THETA_RATE],
             relative_angle_rad: y[RELATIVE],
-            motor_torque_nm: y[TORQUE],
-            friction_torque_nm: self.system.friction_nm(zone, row, y),
-            unbalance_torque_nm: self.system.unbalance_nm(row),
+            motor_torque_nm: system.laws.motor.torque_nm(command_nm),
+            friction_torque_nm: system.friction_nm(&moment, y),
+            unbalance_torque_nm: system.unbalance_nm(acting),
             stop: state.mode.stop,
             velocity_error_mps: [y[VELOCITY], y[VELOCITY + 1]],
             position_error_m: [y[POSITION], y[POSITION + 1]],
+            logged: self.logged(state, time_s, row),
+        }
+    }
+
+    fn logged(&self, state: &State, time_s: f64, row: &Row) -> Logged {
+        let (laws, past) = (&self.system.laws, state.past.as_ref());
+        let measurement = &laws.measurement;
+        let (theta, command) = match past {
+            Some(past) if measurement.skew_s < 0.0 => {
+                let late_s = time_s + measurement.skew_s;
+                (past.at(Past::Theta, late_s), past.at(Past::Torque, late_s - laws.delay_s))
+            }
+            _ => (state.y[THETA], self.system.command_nm(past, time_s, &state.y)),
+        };
+        let cell = pickoff_quantisation::cell(laws.pickoff_step_rad, theta);
+        let seen = pickoff_quantisation::seen_rad(laws.pickoff_step_rad, cell, theta);
+        Logged {
+            gyro_angle_rad: measurement.gyro_angle_rad(seen),
+            motor_torque_nm: measurement.motor_torque_nm(laws.motor.torque_nm(command)),
+            inputs: measurement.row(&state.rows, row, self.period_s()),
         }
     }
 

@@ -15,8 +15,8 @@ pub(crate) trait Field {
 /// A step taken from `tau_s` over `step_s`.
 pub(crate) struct Trial {
     tau_s: f64,
-    step_s: f64,
-    start: Vector,
+    pub(crate) step_s: f64,
+    pub(crate) start: Vector,
     slopes: [Vector; 12],
     /// The solution at the end of the step.
     pub(crate) end: Vector,
@@ -102,6 +102,12 @@ impl Trial {
 }
 
 impl Dense {
+    /// Length of the step, start and coefficients of some quantities.
+    pub(crate) fn of<const M: usize>(&self, indices: [usize; M]) -> (f64, [f64; M], [[f64; 7]; M]) {
+        let coefficients = indices.map(|index| self.coefficients.map(|all| all[index]));
+        (self.step_s, indices.map(|index| self.start[index]), coefficients)
+    }
+
     /// The solution `offset_s` after the start of the step.
     pub(crate) fn at(&self, offset_s: f64) -> Vector {
         let mut y = self.start;

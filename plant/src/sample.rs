@@ -1,5 +1,6 @@
 //! What the plant gives at each row.
 
+use crate::row::Row;
 use crate::state::Stop;
 
 /// The plant at one instant.
@@ -29,4 +30,17 @@ pub struct Sample {
     pub velocity_error_mps: [f64; 2],
     /// INS position error along x and y [m].
     pub position_error_m: [f64; 2],
+    /// What the sensors make of it.
+    pub logged: Logged,
+}
+
+/// The row of a log: what the sensors give.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Logged {
+    /// Pick-off angle, which is theta but for its sensor [rad].
+    pub gyro_angle_rad: f64,
+    /// Motor torque, which is `T_m` but for its sensor [N m].
+    pub motor_torque_nm: f64,
+    /// The inputs.
+    pub inputs: Row,
 }

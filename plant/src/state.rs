@@ -1,6 +1,9 @@
 //! What the plant remembers between two rows.
 
-use crate::vector::{N, Vector};
+use crate::effects::loop_delay::History;
+use crate::effects::measurement::Rows;
+use crate::effects::presliding::Reversal;
+use crate::vector::Vector;
 
 /// Where the gyro's float is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,6 +55,12 @@ pub(crate) struct Mode {
     pub(crate) stop: Stop,
     /// Index of the friction zone.
     pub(crate) zone: usize,
+    /// Index of the stretch of the motor's command.
+    pub(crate) stretch: usize,
+    /// Cell of the pick-off, a whole number.
+    pub(crate) cell: f64,
+    /// Last change of the sign of `w_rel`.
+    pub(crate) reversal: Reversal,
 }
 
 /// State of a [`Plant`](crate::Plant); plain data, which may be cloned to branch a run.
@@ -66,12 +75,21 @@ pub struct State {
     pub(crate) periods: u64,
     pub(crate) events: Vec<StopEvent>,
     pub(crate) steps: u64,
+    /// theta and motor torque as long ago as a delay asks for.
+    pub(crate) past: Option<History>,
+    /// Rows as long ago as a late log asks for.
+    pub(crate) rows: Rows,
 }
 
 impl State {
-    pub(crate) fn zero(floor: Vector) -> Self {
-        let mode = Mode::default();
-        Self { y: [0.0; N], mode, peak: floor, step_s: 1e-4, periods: 0, events: Vec::new(), steps: 0 }
+    /// A run begins at `y`; nothing is resolved below `floor`, and so much of the past is kept.
+    pub(crate) fn new(y: Vector, mode: Mode, floor: Vector, past_s: f64) -> Self {
+        let past = (past_s > 0.0).then(|| History::new(past_s, &y));
+        let rows = Rows::default();
+        let mut state =
+            Self { y, mode, peak: floor, step_s: 1e-4, periods: 0, events: Vec::new(), steps: 0, past, rows };
+        state.note_peaks();
+        state
     }
 
     /// Contacts and releases so far, in order.

@@ -1,7 +1,7 @@
 //! The integrated quantities, by name.
 
 /// Number of integrated quantities.
-pub(crate) const N: usize = 15;
+pub(crate) const N: usize = 18;
 
 /// All integrated quantities.
 pub(crate) type Vector = [f64; N];
@@ -20,11 +20,17 @@ pub(crate) const SECTION: usize = 4;
 pub(crate) const INTEGRATOR: usize = 8;
 /// Motor torque behind the lag [N m].
 pub(crate) const TORQUE: usize = 9;
+/// Angle of the appendage of the flexible mode [rad].
+pub(crate) const APPENDAGE: usize = 10;
+/// Its rate [rad/s].
+pub(crate) const APPENDAGE_RATE: usize = 11;
+/// Cable hysteresis, share of its largest torque.
+pub(crate) const HYSTERESIS: usize = 12;
 /// The states that steer the step size; those that follow are integrals of them.
-pub(crate) const CONTROLLED: usize = 10;
+pub(crate) const CONTROLLED: usize = 13;
 /// rel, integral of `w_rel`: vehicle against stable member [rad].
-pub(crate) const RELATIVE: usize = 10;
+pub(crate) const RELATIVE: usize = 13;
 /// Velocity error along x, then y [m/s].
-pub(crate) const VELOCITY: usize = 11;
+pub(crate) const VELOCITY: usize = 14;
 /// Position error along x, then y [m].
-pub(crate) const POSITION: usize = 13;
+pub(crate) const POSITION: usize = 16;

@@ -1,0 +1,79 @@
+//! `loop_delay`: a pure delay of the motor torque.
+//!
+//! ```text
+//! T_m(t) = motor torque behind the lag at t - d
+//! ```
+//!
+//! Block `servo`. Changes `gyro_angle_rad`, `motor_torque_nm` and the angles of the gimbal. *Consistent* has 28 deg
+//! of phase margin at 526 rad/s: the loop is unstable from about 0.9 ms. The past is kept as the interpolants of the
+//! steps taken, and no step is longer than the delay.
+
+use std::collections::VecDeque;
+
+use super::Altered;
+use crate::runge_kutta::{Dense, nested};
+use crate::vector::{THETA, TORQUE, Vector};
+
+/// theta and motor torque of the recent past.
+#[derive(Debug, Clone)]
+pub(crate) struct History {
+    span_s: f64,
+    before: [f64; 2],
+    pieces: VecDeque<Piece>,
+}
+
+/// Interpolants of theta and of the motor torque over one step.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    from_s: f64,
+    step_s: f64,
+    start: [f64; 2],
+    coefficients: [[f64; 7]; 2],
+}
+
+/// What the history holds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Past {
+    Theta,
+    Torque,
+}
+
+impl History {
+    /// An empty history: what there was before the start is the start.
+    pub(crate) fn new(span_s: f64, y: &Vector) -> Self {
+        Self { span_s, before: [y[THETA], y[TORQUE]], pieces: VecDeque::new() }
+    }
+
+    pub(crate) fn keep(&mut self, from_s: f64, dense: &Dense) {
+        let (step_s, start, coefficients) = dense.of([THETA, TORQUE]);
+        self.pieces.push_back(Piece { from_s, step_s, start, coefficients });
+        while self.pieces.front().is_some_and(|piece| piece.from_s + piece.step_s < from_s + step_s - self.span_s) {
+            self.pieces.pop_front();
+        }
+    }
+
+    pub(crate) fn at(&self, past: Past, time_s: f64) -> f64 {
+        let index = past as usize;
+        // From the oldest: the delay is most of the span.
+        for piece in &self.pieces {
+            let offset_s = time_s - piece.from_s;
+            if offset_s < 0.0 {
+                break;
+            }
+            if offset_s <= piece.step_s {
+                return piece.start[index] + nested(offset_s / piece.step_s, |order| piece.coefficients[index][order]);
+            }
+        }
+        match (self.pieces.front(), self.pieces.back()) {
+            (Some(_), Some(last)) if time_s > last.from_s => {
+                last.start[index] + nested(1.0, |order| last.coefficients[index][order])
+            }
+            (Some(first), _) if time_s > first.from_s => first.start[index],
+            _ => self.before[index],
+        }
+    }
+}
+
+pub(super) fn apply(values: &[f64], altered: &mut Altered) {
+    altered.laws.delay_s += values[0];
+}
