@@ -1,0 +1,13 @@
+//! Foreign files into logs: columns by a map, units into SI, one constant rate.
+
+mod altos;
+mod frame;
+mod map;
+mod resample;
+mod unit;
+
+pub use altos::{GimbalAxis, header_names, is_altos};
+pub use frame::turn_into_stable_member;
+pub use map::{ColumnMap, Source, read};
+pub use resample::{Resampled, Span, resample};
+pub use unit::{NAMES as UNIT_NAMES, scale};
