@@ -230,7 +230,7 @@ impl TimeWatch {
         lengths.push((watch.regular, watch.regular as f64 * watch.report.period_s));
         let all: u64 = lengths.iter().map(|(count, _)| count).sum();
         lengths.retain(|(count, _)| 20 * count >= all && *count > 0);
-        lengths.sort_by(|a, b| b.0.cmp(&a.0));
+        lengths.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
         let share = |count: u64| count as f64 / all as f64;
         watch.report.rates = lengths
             .into_iter()

@@ -135,6 +135,8 @@ fn along(points: &[(f64, f64)], ticks_s: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use std::fmt::Write;
+
     use super::resample;
     use crate::{Column, Log, Needs};
 
@@ -143,7 +145,7 @@ mod tests {
         let mut text = "time_s,accel_x_mps2,accel_y_mps2,accel_z_mps2,vehicle_rate_radps,note\n".to_owned();
         for time_s in [-0.02, -0.01, 0.0, 0.01, 0.01, 0.02, 0.06, 0.07] {
             let missing = if time_s > 0.015 && time_s < 0.03 { String::new() } else { format!("{}", 3.0 * time_s) };
-            text += &format!("{time_s},{missing},0,9.8,{},x\n", 1.0 - time_s);
+            let _ = writeln!(text, "{time_s},{missing},0,9.8,{},x", 1.0 - time_s);
         }
         let source = Log::from_source(text.as_bytes(), "x.csv", Needs::Run).expect("reads");
         let result = resample(&source, 1000.0, f64::NEG_INFINITY, f64::INFINITY).expect("two rows");
