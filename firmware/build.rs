@@ -33,10 +33,12 @@ struct Counter {
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=boards");
     println!("cargo:rerun-if-changed=../memory.x");
+    println!("cargo:rerun-if-changed=vectors");
     println!("cargo:rerun-if-env-changed=GIMBAL_BOARD");
     let out = PathBuf::from(env::var("OUT_DIR")?);
+    write_vectors(&out)?;
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
-        return write_constants(&out, "host", 1);
+        return write_constants(&out, "host", 1_000_000);
     }
     let target = env::var("TARGET")?;
     let (name, board) = choose(&target)?;
@@ -64,11 +66,20 @@ fn choose(target: &str) -> Result<(String, Board), Box<dyn Error>> {
 }
 
 fn write_constants(out: &Path, name: &str, counter_hz: u32) -> Result<(), Box<dyn Error>> {
+    let mhz = counter_hz / 1_000_000;
     let text = format!(
         "/// Name of the board: its file in `boards/`.\npub const NAME: &str = \"{name}\";\n\
-         /// Rate of the instruction counter in virtual time [1/s].\npub const COUNTER_HZ: u32 = {counter_hz};\n"
+         /// Rate of the instruction counter in virtual time [1/s].\npub const COUNTER_HZ: u32 = {mhz} * 1_000_000;\n"
     );
     Ok(fs::write(out.join("board.rs"), text)?)
+}
+
+/// The committed flight as an array: the boards have no files.
+fn write_vectors(out: &Path) -> Result<(), Box<dyn Error>> {
+    let text = fs::read_to_string("vectors/flight.csv")?;
+    let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).skip(1).collect();
+    let array: String = rows.iter().map(|row| format!("    [{row}],\n")).collect();
+    Ok(fs::write(out.join("flight.rs"), format!("[\n{array}]\n"))?)
 }
 
 /// Link arguments for every program of this package.

@@ -10,6 +10,7 @@ pub mod board {
     include!(concat!(env!("OUT_DIR"), "/board.rs"));
 }
 
+pub mod cases;
 #[cfg(target_os = "none")]
 pub mod counter;
 #[cfg(target_os = "none")]

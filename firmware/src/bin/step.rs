@@ -1,0 +1,117 @@
+//! The step alone, as functions of their own: what the gates examine and the budget measures.
+//!
+//! Linked with `panic-never`, whose panic handler exists in no library: where a panic can be reached the link fails.
+//! Nothing here builds a law, for that may fail and uses doubles.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(not(target_os = "none"))]
+fn main() {}
+
+#[cfg(target_os = "none")]
+mod target {
+    // Symbols that the image keeps by name: unmangled names are unsafe because two could be equal.
+    #![allow(unsafe_code)]
+
+    use gimbal_servo::{Fixed, Input, Law, Number, Output, State};
+    use panic_never as _;
+
+    #[gimbal_firmware::start]
+    fn main() -> ! {
+        loop {
+            core::hint::spin_loop();
+        }
+    }
+
+    /// Named in the image and in `xtask/src/target/gates.rs`.
+    #[unsafe(no_mangle)]
+    extern "C" fn step_f32(law: &Law<f32>, state: &mut State<f32>, input: &Input<f32>, output: &mut Output<f32>) {
+        step(law, state, input, output);
+    }
+
+    /// Named in the image and in `xtask/src/target/gates.rs`.
+    #[unsafe(no_mangle)]
+    extern "C" fn step_fixed(
+        law: &Law<Fixed>,
+        state: &mut State<Fixed>,
+        input: &Input<Fixed>,
+        output: &mut Output<Fixed>,
+    ) {
+        step(law, state, input, output);
+    }
+
+    #[inline(always)]
+    fn step<N: Number>(law: &Law<N>, state: &mut State<N>, input: &Input<N>, output: &mut Output<N>) {
+        *output = law.step(state, *input);
+        #[cfg(feature = "bad-panic")]
+        bad::panic();
+        #[cfg(feature = "bad-double")]
+        bad::double();
+        #[cfg(feature = "bad-alloc")]
+        bad::alloc();
+        #[cfg(feature = "bad-recursion")]
+        bad::recursion(core::hint::black_box(3));
+        #[cfg(feature = "bad-indirect")]
+        bad::indirect();
+    }
+
+    type Step<N> = extern "C" fn(&Law<N>, &mut State<N>, &Input<N>, &mut Output<N>);
+
+    /// Keeps both in the image.
+    #[used]
+    static STEPS: (Step<f32>, Step<Fixed>) = (step_f32, step_fixed);
+
+    /// One thing each that the step must not do.
+    #[cfg(any(
+        feature = "bad-panic",
+        feature = "bad-double",
+        feature = "bad-alloc",
+        feature = "bad-recursion",
+        feature = "bad-indirect"
+    ))]
+    #[allow(dead_code)]
+    mod bad {
+        use core::hint::black_box;
+
+        pub(super) fn panic() {
+            let table = [1, 2, 3];
+            black_box(table[black_box(2_usize)]);
+        }
+
+        pub(super) fn double() {
+            black_box(black_box(2.0_f64) * black_box(3.0_f64));
+        }
+
+        #[inline(never)]
+        pub(super) fn recursion(depth: u32) -> u32 {
+            if depth == 0 { 0 } else { black_box(recursion(depth - 1)) + 1 }
+        }
+
+        pub(super) fn indirect() {
+            let function: fn() = black_box(double);
+            function();
+        }
+
+        #[cfg(feature = "bad-alloc")]
+        pub(super) fn alloc() {
+            extern crate alloc;
+            use core::alloc::{GlobalAlloc, Layout};
+
+            struct Nothing;
+
+            // SAFETY: it never hands out memory.
+            unsafe impl GlobalAlloc for Nothing {
+                unsafe fn alloc(&self, _: Layout) -> *mut u8 {
+                    core::ptr::null_mut()
+                }
+                unsafe fn dealloc(&self, _: *mut u8, _: Layout) {}
+            }
+
+            #[global_allocator]
+            static ALLOCATOR: Nothing = Nothing;
+
+            // SAFETY: the layout is not empty; what is returned is only looked at.
+            black_box(unsafe { alloc::alloc::alloc(Layout::new::<u64>()) });
+        }
+    }
+}

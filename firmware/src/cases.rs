@@ -1,0 +1,133 @@
+//! Input for `digest` and `cost`: the same on the host and on every board, made by integer and plain f64 arithmetic.
+
+use core::f64::consts::PI;
+use gimbal_servo::{Config, Digest, Input, Interpolation, Law, Number};
+
+/// One run: a configuration, and the input row of each step.
+#[derive(Debug, Clone, Copy)]
+pub struct Case {
+    /// Name in results.
+    pub name: &'static str,
+    /// The axis.
+    pub config: fn() -> Config,
+    /// Row of step `k`.
+    pub row: fn(u32) -> Input<f64>,
+    /// Number of steps.
+    pub steps: u32,
+}
+
+/// Every case.
+pub const CASES: [Case; 4] = [
+    FLIGHT,
+    STOPS,
+    Case { name: "range", config: Config::as_printed, row: range_row, steps: 3_000 },
+    Case { name: "variant", config: variant, row: variant_row, steps: 3_000 },
+];
+
+/// The recorded flight: friction and unbalance act all the time.
+pub const FLIGHT: Case = Case { name: "flight", config: Config::consistent, row: flight_row, steps: 10_000 };
+
+/// A torque that throws the gyro from stop to stop.
+pub const STOPS: Case = Case { name: "stops", config: Config::consistent, row: stops_row, steps: 10_000 };
+
+impl Case {
+    /// Steps through the whole case and returns the digest of everything that came out; 0 if the law cannot be built.
+    #[must_use]
+    // Not inlined: the laws of all cases at once would not fit the stack of the smallest board.
+    #[inline(never)]
+    pub fn digest<N: Number>(&self) -> u64 {
+        // By reference: a law is some kilobytes, and moving it out would make a copy.
+        let built = (self.config)().build::<N>();
+        let Ok(law) = &built else { return 0 };
+        let mut state = law.start();
+        let mut digest = Digest::default();
+        for k in 0..self.steps {
+            let output = law.step(&mut state, self.input(law, k));
+            digest.add_output(&output);
+        }
+        let velocity = law.velocity_error_mps(&state);
+        let position = law.position_error_m(&state);
+        for sum in velocity.into_iter().chain(position) {
+            digest.add(&sum.to_bits().to_le_bytes());
+        }
+        digest.value()
+    }
+
+    /// Row of step `k` as the law takes it.
+    #[must_use]
+    pub fn input<N: Number>(&self, law: &Law<N>, k: u32) -> Input<N> {
+        law.units().input(&(self.row)(k))
+    }
+}
+
+/// x, y, z [cm/s2] and rate [0.01 deg/s], 100 rows a second.
+static FLIGHT_ROWS: [[i16; 4]; 1001] = include!(concat!(env!("OUT_DIR"), "/flight.rs"));
+
+/// The recorded flight at 1 kHz, interpolated linearly.
+fn flight_row(k: u32) -> Input<f64> {
+    let at = (k / 10) as usize;
+    let part = f64::from(k % 10) * 0.1;
+    let [row, next] = [at, at + 1].map(|i| FLIGHT_ROWS.get(i).copied().unwrap_or_default());
+    let value = |i: usize| f64::from(row[i]) + (f64::from(next[i]) - f64::from(row[i])) * part;
+    Input {
+        accel_x_mps2: value(0) * 0.01,
+        accel_y_mps2: value(1) * 0.01,
+        accel_z_mps2: value(2) * 0.01,
+        vehicle_rate_radps: value(3) * (0.01 * PI / 180.0),
+        ..Input::default()
+    }
+}
+
+/// 0.035 N m (3.5e5 dyne cm) for 0.4 s, nothing for 0.3 s, the same the other way: contact and release each time.
+fn stops_row(k: u32) -> Input<f64> {
+    let torque_nm = match k % 1400 {
+        0..400 => 0.035,
+        700..1100 => -0.035,
+        _ => 0.0,
+    };
+    Input { torque_nm, accel_z_mps2: 9.80665, ..Input::default() }
+}
+
+/// Noise over 1.2 times the whole range of every input, with values that are no numbers among it.
+fn range_row(k: u32) -> Input<f64> {
+    let mut seed = k;
+    let range = gimbal_servo::Range::default();
+    let mut noise = |largest: f64| {
+        seed = mix(seed.wrapping_add(0x9E37_79B9));
+        match seed % 1000 {
+            0 => f64::NAN,
+            1 => f64::INFINITY,
+            _ => f64::from(mix(seed).cast_signed()) * (1.2 / 2_147_483_648.0) * largest,
+        }
+    };
+    Input {
+        accel_x_mps2: noise(range.radial_accel_mps2),
+        accel_y_mps2: noise(range.radial_accel_mps2),
+        accel_z_mps2: noise(range.axial_accel_mps2),
+        vehicle_rate_radps: noise(range.rate_radps),
+        torque_nm: noise(range.torque_nm),
+        spin_rate_radps: noise(range.rate_radps),
+    }
+}
+
+/// What is off by default switched on: cross coupling, held inputs, another period.
+fn variant() -> Config {
+    let mut config = Config::consistent();
+    config.gyro.cross_coupling = true;
+    config.interpolation = Interpolation::Held;
+    config.period_s = 0.5e-3;
+    config
+}
+
+/// The flight with a rate about the gyro's spin axis that swings slowly.
+fn variant_row(k: u32) -> Input<f64> {
+    let swing = (f64::from(k % 1000) - 500.0) * 1e-3;
+    Input { spin_rate_radps: swing, ..flight_row(k) }
+}
+
+/// Scrambles 32 bits (the finaliser of MurmurHash3).
+fn mix(mut x: u32) -> u32 {
+    x = (x ^ (x >> 16)).wrapping_mul(0x85EB_CA6B);
+    x = (x ^ (x >> 13)).wrapping_mul(0xC2B2_AE35);
+    x ^ (x >> 16)
+}
