@@ -36,7 +36,9 @@ impl Advance<'_> {
         for &corner_s in &corners[..count] {
             let mut slope = None;
             while tau_s < corner_s {
-                tau_s = self.step(tau_s, corner_s, &mut slope, &mut crossings, state);
+                let felt_s = state.past.as_ref().and_then(|past| past.next_felt_s(self.start_s + tau_s));
+                let end_s = felt_s.map_or(corner_s, |felt_s| corner_s.min(felt_s - self.start_s));
+                tau_s = self.step(tau_s, end_s, &mut slope, &mut crossings, state);
             }
         }
         state.periods += 1;
@@ -97,6 +99,9 @@ impl Advance<'_> {
             *crossings += 1;
             *slope = None;
             self.now(reached_s, state, |moment, state| self.system.cross(exit, moment, state));
+            if let Some(past) = &mut state.past {
+                past.feel_at(self.start_s + reached_s + self.system.laws.delay_s);
+            }
         } else if !watched {
             *slope = None;
             self.enter(reached_s, state);

@@ -20,6 +20,8 @@ pub(crate) struct History {
     span_s: f64,
     before: [f64; 2],
     pieces: VecDeque<Piece>,
+    /// Times at which the corner of an earlier crossing comes out of the delay, rising [s].
+    felt_s: VecDeque<f64>,
 }
 
 /// Interpolants of theta and of the motor torque over one step.
@@ -41,7 +43,7 @@ pub(crate) enum Past {
 impl History {
     /// An empty history: what there was before the start is the start.
     pub(crate) fn new(span_s: f64, y: &Vector) -> Self {
-        Self { span_s, before: [y[THETA], y[TORQUE]], pieces: VecDeque::new() }
+        Self { span_s, before: [y[THETA], y[TORQUE]], pieces: VecDeque::new(), felt_s: VecDeque::new() }
     }
 
     pub(crate) fn keep(&mut self, from_s: f64, dense: &Dense) {
@@ -50,6 +52,19 @@ impl History {
         while self.pieces.front().is_some_and(|piece| piece.from_s + piece.step_s < from_s + step_s - self.span_s) {
             self.pieces.pop_front();
         }
+    }
+
+    /// A crossing leaves a corner in the torque, and steps must end where it comes out of the delay.
+    pub(crate) fn feel_at(&mut self, time_s: f64) {
+        self.felt_s.push_back(time_s);
+        while self.felt_s.front().is_some_and(|first_s| *first_s < time_s - self.span_s) {
+            self.felt_s.pop_front();
+        }
+    }
+
+    /// The next such time; those closer than rounding are past.
+    pub(crate) fn next_felt_s(&self, time_s: f64) -> Option<f64> {
+        self.felt_s.iter().copied().find(|felt_s| *felt_s > time_s + 1e-12)
     }
 
     pub(crate) fn at(&self, past: Past, time_s: f64) -> f64 {

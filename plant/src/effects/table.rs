@@ -174,7 +174,7 @@ pub(crate) const TABLE: [Entry; 33] = [
     entry(
         "torque_saturation",
         Servo,
-        &[parameter("limit_nm", "N m", [5e-3, 1e-2, 3e-2], NotNegative)],
+        &[parameter("limit_nm", "N m", [1.5e-2, 2e-2, 5e-2], NotNegative)],
         LOOP,
         motor::torque_saturation,
     ),
@@ -182,7 +182,7 @@ pub(crate) const TABLE: [Entry; 33] = [
     entry(
         "pickoff_quantisation",
         Servo,
-        &[parameter("step_rad", "rad", [5e-7, 2e-6, 2e-5], NotNegative)],
+        &[parameter("step_rad", "rad", [1e-6, 5e-6, 2e-5], NotNegative)],
         LOOP,
         pickoff_quantisation::apply,
     ),
