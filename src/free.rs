@@ -33,22 +33,23 @@ type Output<N> = Row<N, { ORDER + 1 }>;
 
 /// The free loop over one period.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub(crate) struct Law<N: Number> {
     blocks: [Block<N>; BLOCKS],
     single_transition: N::Coef,
     single_drive: N::Coef,
-    gyro_angle: Output<N>,
     gimbal_rate: Output<N>,
+    gyro_angle: Output<N>,
     gimbal_angle: Output<N>,
     motor_torque: Output<N>,
+    /// Change of phi' over a period for a torque of 1.
+    pub(crate) gimbal_rate_gain: Row<N, 1>,
     /// theta' times the period, at one instant.
     pub(crate) gyro_move: Row<N, ORDER>,
     /// y less `T_d`, then `z_i`, at one instant.
     pub(crate) motor: [Row<N, ORDER>; 6],
     /// The modes of a physical state.
     pub(crate) entry: [Row<N, PHYSICAL>; ORDER],
-    /// Change of phi' over a period for a torque of 1.
-    pub(crate) gimbal_rate_gain: Row<N, 1>,
 }
 
 /// What the modes say before the torque of the period is known.

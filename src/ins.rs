@@ -5,8 +5,11 @@
 //! ```
 //!
 //! Both integrals are trapezoidal. Each product is counted in whole units, what is left over is carried to the next
-//! period, and the counts are added as 64-bit and 128-bit integers: hours of small increments lose nothing. The sums
-//! saturate.
+//! row, and the counts are added as 64-bit and 128-bit integers: hours of small increments lose nothing. What is added
+//! are plain sums, `r = sum g` of the products g and `q = sum r`; the trapezoids' half ends are taken out when a result
+//! is read, `v = T (r - g/2)` and `p = T^2 (q - r/2) - T v/2`, since the first product is zero.
+//!
+//! A count is at most 2^31, so that the sums are full after 2^32 rows: 49 days at 1 kHz.
 
 use crate::number::Number;
 use crate::units::Units;
@@ -16,19 +19,16 @@ use crate::units::Units;
 pub(crate) struct State<N: Number> {
     /// What the last count left over.
     carry: [N; 2],
-    /// Counts of the last row.
-    last: [i32; 2],
     sums: Sums,
 }
 
-/// Velocity and position error as whole counts: exact, comparable, and turned into SI by
-/// [`Law`](crate::Law)'s `velocity_error_mps` and `position_error_m`.
+/// Plain sums of whole counts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Sums {
-    /// Velocity error, two halves to a count times the period.
-    pub velocity: [i64; 2],
-    /// Position error, four quarters to a count times the period squared.
-    pub position: [i128; 2],
+pub(crate) struct Sums {
+    /// r
+    pub(crate) velocity: [i64; 2],
+    /// q
+    pub(crate) position: [i128; 2],
 }
 
 /// How counts are made and read.
@@ -48,58 +48,39 @@ impl<N: Number> Law<N> {
         Self { scale: N::coef(libm::ldexp(1.0, -exponent)), count_mps2: libm::ldexp(1.0, exponent), period_s }
     }
 
-    /// Takes the first row: no interval yet.
-    pub(crate) fn start(&self, state: &mut State<N>, accel: [N; 2], gimbal_angle: N) {
-        state.last = self.count(state, accel, gimbal_angle);
-    }
-
-    /// Adds one period; false if a sum saturated.
+    /// Adds the product at one row.
     #[inline(always)]
-    pub(crate) fn step(&self, state: &mut State<N>, accel: [N; 2], gimbal_angle: N) -> bool {
-        let now = self.count(state, accel, gimbal_angle);
-        let mut exact = true;
+    pub(crate) fn step(&self, state: &mut State<N>, [accel_x, accel_y]: [N; 2], gimbal_angle: N) {
+        let scaled = N::count_scaled(gimbal_angle, self.scale);
+        let counts = [N::count(accel_y, scaled, &mut state.carry[0]), N::count(-accel_x, scaled, &mut state.carry[1])];
         let Sums { velocity, position } = &mut state.sums;
-        let pairs = velocity.iter_mut().zip(position).zip(state.last.iter().zip(&now));
-        for ((velocity, position), (last, now)) in pairs {
-            let (next, velocity_over) = velocity.overflowing_add(i64::from(*last) + i64::from(*now));
-            let (sum, position_over) = position.overflowing_add(i128::from(*velocity) + i128::from(next));
-            if velocity_over || position_over {
-                exact = false;
-            } else {
-                *velocity = next;
-                *position = sum;
-            }
+        for ((velocity, position), count) in velocity.iter_mut().zip(position).zip(counts) {
+            *velocity = velocity.wrapping_add(i64::from(count));
+            *position = position.wrapping_add(i128::from(*velocity));
         }
-        state.last = now;
-        exact
     }
 
-    #[inline(always)]
-    fn count(&self, state: &mut State<N>, [accel_x, accel_y]: [N; 2], gimbal_angle: N) -> [i32; 2] {
-        [
-            N::count(accel_y, gimbal_angle, self.scale, &mut state.carry[0]),
-            N::count(-accel_x, gimbal_angle, self.scale, &mut state.carry[1]),
-        ]
-    }
-
-    /// v [m/s].
-    pub(crate) fn velocity_error_mps(&self, sums: &Sums) -> [f64; 2] {
-        sums.velocity.map(|halves| halves as f64 * (0.5 * self.count_mps2 * self.period_s))
+    /// v [m/s]; `products` are the products at the last row [rad m/s2].
+    pub(crate) fn velocity_error_mps(&self, state: &State<N>, products: [f64; 2]) -> [f64; 2] {
+        core::array::from_fn(|axis| {
+            let sum = state.sums.velocity[axis] as f64 * self.count_mps2;
+            self.period_s * (sum - 0.5 * products[axis])
+        })
     }
 
     /// p [m].
-    pub(crate) fn position_error_m(&self, sums: &Sums) -> [f64; 2] {
-        sums.position.map(|quarters| quarters as f64 * (0.25 * self.count_mps2 * self.period_s * self.period_s))
+    pub(crate) fn position_error_m(&self, state: &State<N>, products: [f64; 2]) -> [f64; 2] {
+        let velocity = self.velocity_error_mps(state, products);
+        core::array::from_fn(|axis| {
+            let halves = 2 * state.sums.position[axis] - i128::from(state.sums.velocity[axis]);
+            0.5 * self.period_s * (self.period_s * self.count_mps2 * halves as f64 - velocity[axis])
+        })
     }
 }
 
 impl<N: Number> State<N> {
-    pub(crate) fn sums(&self) -> Sums {
-        self.sums
-    }
-
     /// Every field, for saving.
-    pub(crate) fn parts(&mut self) -> (&mut [N; 2], &mut [i32; 2], &mut Sums) {
-        (&mut self.carry, &mut self.last, &mut self.sums)
+    pub(crate) fn parts(&mut self) -> (&mut [N; 2], &mut Sums) {
+        (&mut self.carry, &mut self.sums)
     }
 }

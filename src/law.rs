@@ -14,21 +14,24 @@ use crate::{bearing, free, friction, guard, ins, stop};
 /// One axis, ready to step: built once from a [`Config`], never changed.
 ///
 /// `N` is `f32` or [`Fixed`](crate::Fixed).
+///
+/// In this order in memory: what every step reads comes first, within reach of a short offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub struct Law<N: Number> {
-    pub(crate) units: Units,
     pub(crate) held_inputs: bool,
-    pub(crate) has_friction: bool,
     pub(crate) cross_coupling: bool,
     pub(crate) guard: guard::Law<N>,
     pub(crate) unbalance: Row<N, 2>,
     pub(crate) level: bearing::level::Law<N>,
     pub(crate) friction: friction::Law<N>,
     pub(crate) free: free::Law<N>,
-    pub(crate) stop: stop::Law<N>,
-    pub(crate) ins: ins::Law<N>,
+    pub(crate) small_angle: N,
     /// phi' to the full scale of rates.
     pub(crate) rate_shift: u32,
+    pub(crate) ins: ins::Law<N>,
+    pub(crate) stop: stop::Law<N>,
+    pub(crate) tables: bearing::level::Tables<N>,
     /// Torque that makes phi' jump by 1 over a period: `Jg / T`.
     pub(crate) drift_torque: Row<N, 1>,
     /// phi lost over a period to a drift of 1.
@@ -36,7 +39,7 @@ pub struct Law<N: Number> {
     /// theta's full scale times the rates', over that of phi'.
     pub(crate) drift_scale: Row<N, 1>,
     pub(crate) largest_drift_torque: N,
-    pub(crate) small_angle: N,
+    pub(crate) units: Units,
     pub(crate) identity: u32,
 }
 
@@ -52,13 +55,14 @@ impl Config {
         let units = Units::new::<N>(self, &plant, &modes);
         let period = self.period_s;
         let range = &self.range;
+        let (level, tables) = bearing::level::Law::build(self, &units);
         Ok(Law {
             held_inputs: self.interpolation == Interpolation::Held,
-            has_friction: self.bearing.count > 0,
             cross_coupling: self.gyro.cross_coupling,
             guard: guard::Law::build(range, &units),
             unbalance: Row::build([-self.unbalance.y_kg_m, self.unbalance.x_kg_m], [units.accel; 2], units.torque),
-            level: bearing::level::Law::build(self, &units),
+            level,
+            tables,
             friction: friction::Law::build(self.bearing.slip_rate_radps, &units),
             free: free::Law::build(&plant, &modes, &units, period),
             stop: stop::Law::build(&plant, &units, self.gyro.stop_angle_rad, period),
@@ -100,13 +104,20 @@ impl<N: Number> Law<N> {
     /// Velocity error so far, along x and y [m/s].
     #[must_use]
     pub fn velocity_error_mps(&self, state: &State<N>) -> [f64; 2] {
-        self.ins.velocity_error_mps(&state.ins.sums())
+        self.ins.velocity_error_mps(&state.ins, self.products(state))
     }
 
     /// Position error so far, along x and y [m].
     #[must_use]
     pub fn position_error_m(&self, state: &State<N>) -> [f64; 2] {
-        self.ins.position_error_m(&state.ins.sums())
+        self.ins.position_error_m(&state.ins, self.products(state))
+    }
+
+    /// `(a_y phi, -a_x phi)` at the last row.
+    fn products(&self, state: &State<N>) -> [f64; 2] {
+        let angle = state.gimbal_angle.to_f64(self.units.gimbal_angle);
+        let accel = |signal: N| signal.to_f64(self.units.accel);
+        [accel(state.row.accel_y_mps2) * angle, -accel(state.row.accel_x_mps2) * angle]
     }
 
     /// What phi has moved unseen by the gyro up to its last release [rad].

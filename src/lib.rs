@@ -33,7 +33,6 @@ pub use config::{Config, Interpolation, Range};
 pub use digest::Digest;
 pub use error::BuildError;
 pub use faults::Faults;
-pub use ins::Sums;
 pub use law::Law;
 pub use number::{Fixed, Number};
 pub use saved::{RestoreError, SAVED_LEN, Saved};

@@ -97,9 +97,11 @@ pub trait Number:
     /// Whether the value is finite.
     fn is_number(self) -> bool;
 
-    /// A product of two signals as a whole number of counts, what is left over carried to the next call. One count is
-    /// `1 / scale` for `f32`, and 2^-31 of the product of the full scales for [`Fixed`].
-    fn count(left: Self, right: Self, scale: Self::Coef, carry: &mut Self) -> i32;
+    /// A factor of [`Number::count`], for counts of `1 / scale`; as it is for [`Fixed`].
+    fn count_scaled(signal: Self, scale: Self::Coef) -> Self;
+    /// A product as a whole number of counts, what is left over carried to the next call. For [`Fixed`] a count is
+    /// 2^-31 of the product of the full scales.
+    fn count(left: Self, scaled: Self, carry: &mut Self) -> i32;
 
     /// Exponent of the smallest full scale that holds `bound`; 0 for `f32`.
     fn exponent(bound: f64) -> i32;

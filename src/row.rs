@@ -33,8 +33,9 @@ impl<N: Number, const L: usize> Row<N, L> {
 
     #[inline(always)]
     fn products(&self, signals: &[N; L]) -> N::Wide {
-        let mut sum = N::Wide::default();
-        for (coef, signal) in self.coefs.iter().zip(signals) {
+        let [first, rest @ ..] = &self.coefs[..] else { return N::Wide::default() };
+        let mut sum = *first * signals[0];
+        for (coef, signal) in rest.iter().zip(&signals[1..]) {
             sum = sum + *coef * *signal;
         }
         sum

@@ -8,7 +8,7 @@
 //! | 3 | flags: started, offset left; stop |
 //! | 4 each | signals, in the order of [`State`]'s fields |
 //! | 8 each | accumulating states |
-//! | 64 | INS sums |
+//! | 56 | INS carries and sums |
 //! | 4 | checksum of all before |
 
 use core::fmt;
@@ -22,7 +22,7 @@ use crate::state::State;
 const MAGIC: [u8; 4] = *b"GSS1";
 
 /// Length of a saved state in bytes.
-pub const SAVED_LEN: usize = 12 + 13 * 4 + 18 * 8 + 2 * 4 + 2 * 4 + 2 * 8 + 2 * 16 + 4;
+pub const SAVED_LEN: usize = 12 + 14 * 4 + 18 * 8 + 2 * 4 + 2 * 8 + 2 * 16 + 4;
 
 /// A state as bytes.
 pub type Saved = [u8; SAVED_LEN];
@@ -154,6 +154,7 @@ fn walk<N: Number>(state: &mut State<N>, codec: &mut impl Codec) {
         &mut state.gimbal_rate,
         &mut state.relative_rate,
         &mut state.drift,
+        &mut state.gimbal_angle,
     ] {
         codec.signal(signal);
     }
@@ -172,14 +173,9 @@ fn walk<N: Number>(state: &mut State<N>, codec: &mut impl Codec) {
 
 impl<N: Number> crate::ins::State<N> {
     fn walk(&mut self, codec: &mut impl Codec) {
-        let (carry, last, sums) = self.parts();
+        let (carry, sums) = self.parts();
         for carry in carry {
             codec.signal(carry);
-        }
-        for last in last {
-            let mut bytes = last.to_le_bytes();
-            codec.bytes(&mut bytes);
-            *last = i32::from_le_bytes(bytes);
         }
         for velocity in &mut sums.velocity {
             let mut bytes = velocity.to_le_bytes();

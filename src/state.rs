@@ -8,11 +8,6 @@ use crate::{free, stop};
 /// Everything that a step remembers: plain data, copied freely, saved and restored as bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State<N: Number> {
-    /// Whether a first row has come.
-    pub(crate) started: bool,
-    /// Whether the gyro has ever left a stop.
-    pub(crate) offset_left: bool,
-    pub(crate) stop: Stop,
     /// The last row as admitted.
     pub(crate) row: Input<N>,
     /// Friction level and other disturbance torques at the last row.
@@ -21,6 +16,7 @@ pub struct State<N: Number> {
     /// Disturbance torque that acted over the last period.
     pub(crate) torque: N,
     pub(crate) gyro_angle: N,
+    pub(crate) gimbal_angle: N,
     pub(crate) gimbal_rate: N,
     /// The bearing's rate at the last row.
     pub(crate) relative_rate: N,
@@ -31,6 +27,11 @@ pub struct State<N: Number> {
     pub(crate) free: free::State<N>,
     pub(crate) held: stop::State<N>,
     pub(crate) ins: ins::State<N>,
+    /// Whether a first row has come.
+    pub(crate) started: bool,
+    /// Whether the gyro has ever left a stop.
+    pub(crate) offset_left: bool,
+    pub(crate) stop: Stop,
 }
 
 impl<N: Number> State<N> {
@@ -45,6 +46,7 @@ impl<N: Number> State<N> {
             other_torque: N::ZERO,
             torque: N::ZERO,
             gyro_angle: N::ZERO,
+            gimbal_angle: N::ZERO,
             gimbal_rate: N::ZERO,
             relative_rate: N::ZERO,
             drift: N::ZERO,

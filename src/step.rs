@@ -43,9 +43,9 @@ impl<N: Number> Law<N> {
         let mut faults = Faults::NONE;
         let row = self.guard.admit(&state.row, &input, &mut faults);
         let unbalance = self.unbalance.at(&[row.accel_x_mps2, row.accel_y_mps2]);
-        let drift = if self.cross_coupling { self.drift(state, &row) } else { N::ZERO };
         let other = unbalance + row.torque_nm;
         let level = self.friction_level(state, &row, &mut faults);
+        let drift = if self.cross_coupling { self.drift(state, &row) } else { N::ZERO };
 
         let moved = if state.started {
             let acting = self.acting(state, &row, other, level, drift, &mut faults);
@@ -55,28 +55,28 @@ impl<N: Number> Law<N> {
         };
 
         let mut gimbal_angle = N::narrow(moved.gimbal_angle);
-        if !gimbal_angle.within(N::ONE) || N::is_full(moved.gimbal_angle) {
-            faults |= Faults::ARITHMETIC_SATURATED;
-            gimbal_angle = gimbal_angle.least(N::ONE).most(-N::ONE);
+        if !gimbal_angle.within(self.small_angle) {
+            gimbal_angle = confine_angle::<N>(moved.gimbal_angle, &mut faults);
         }
         let gimbal_rate = moved.sensed_rate - drift;
         let relative_rate = row.vehicle_rate_radps - gimbal_rate.shift_down(self.rate_shift);
         let friction = level.times(self.friction.clamp(relative_rate));
-        let accel = [row.accel_x_mps2, row.accel_y_mps2];
-        if !state.started {
-            self.ins.start(&mut state.ins, accel, gimbal_angle);
-        } else if !self.ins.step(&mut state.ins, accel, gimbal_angle) {
-            faults |= Faults::ARITHMETIC_SATURATED;
-        }
+        self.ins.step(&mut state.ins, [row.accel_x_mps2, row.accel_y_mps2], gimbal_angle);
 
         state.started = true;
         state.row = row;
         state.friction_level = level;
         state.other_torque = other;
         state.gyro_angle = moved.gyro_angle;
+        state.gimbal_angle = gimbal_angle;
         state.gimbal_rate = gimbal_rate;
         state.relative_rate = relative_rate;
         state.drift = drift;
+        if state.stop != Stop::Free {
+            faults |= Faults::GYRO_SATURATED;
+        } else if state.offset_left {
+            faults |= Faults::OFFSET_LEFT;
+        }
         Output {
             gimbal_angle_rad: gimbal_angle,
             gimbal_rate_radps: gimbal_rate,
@@ -88,22 +88,19 @@ impl<N: Number> Law<N> {
             relative_rate_radps: relative_rate,
             stop: state.stop,
             stop_change_age: moved.stop_change_age,
-            faults: faults
-                | Faults::GYRO_SATURATED.when(state.stop != Stop::Free)
-                | Faults::OFFSET_LEFT.when(state.offset_left && state.stop == Stop::Free)
-                | Faults::SMALL_ANGLE_EXCEEDED.when(!gimbal_angle.within(self.small_angle)),
+            faults,
         }
     }
 
     /// Friction level at the row, for the bearing's rate as it was at the last one.
     #[inline(always)]
     fn friction_level(&self, state: &State<N>, row: &Input<N>, faults: &mut Faults) -> N {
-        if !self.has_friction {
-            return N::ZERO;
-        }
         let rate = row.vehicle_rate_radps - state.gimbal_rate.shift_down(self.rate_shift);
-        let level = self.level.at(row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2, rate);
-        *faults |= Faults::TABLE_END.when(level.table_end);
+        let accel = [row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2];
+        let level = self.level.at(&self.tables, accel, rate);
+        if level.table_end {
+            *faults |= Faults::TABLE_END;
+        }
         level.torque
     }
 
@@ -138,17 +135,22 @@ impl<N: Number> Law<N> {
             }
         };
         if self.cross_coupling {
-            // The gyro senses phi' + drift, and the gimbal obeys (1) for phi' alone: for the sensed rate, a change of the
-            // drift is a torque. phi loses the drift's integral.
-            let torque = self.drift_torque.at(&[drift - state.drift]);
-            let limit = self.largest_drift_torque;
-            *faults |= Faults::ARITHMETIC_SATURATED.when(!torque.within(limit));
-            acting.other = acting.other + torque.least(limit).most(-limit);
-            let lost = self.drift_angle.increment(&[drift]) + self.drift_angle.increment(&[state.drift]);
-            state.offset = N::confine(state.offset + lost);
-            state.held.gimbal_angle = N::confine(state.held.gimbal_angle + lost);
+            self.couple(state, &mut acting, faults);
         }
         acting
+    }
+
+    /// The gyro senses phi' + drift, and the gimbal obeys (1) for phi' alone: for the sensed rate, a change of the drift is
+    /// a torque. phi loses the drift's integral.
+    #[cold]
+    fn couple(&self, state: &mut State<N>, acting: &mut Acting<N>, faults: &mut Faults) {
+        let torque = self.drift_torque.at(&[acting.drift - state.drift]);
+        let limit = self.largest_drift_torque;
+        *faults |= Faults::ARITHMETIC_SATURATED.when(!torque.within(limit));
+        acting.other = acting.other + torque.least(limit).most(-limit);
+        let lost = self.drift_angle.increment(&[acting.drift]) + self.drift_angle.increment(&[state.drift]);
+        state.offset = N::confine(state.offset + lost);
+        state.held.gimbal_angle = N::confine(state.held.gimbal_angle + lost);
     }
 
     #[inline(always)]
@@ -164,9 +166,6 @@ impl<N: Number> Law<N> {
     /// with all of it.
     #[inline(always)]
     fn torque(&self, state: &State<N>, acting: &Acting<N>, quiet_rate: N, brake: N) -> N {
-        if !self.has_friction {
-            return acting.other;
-        }
         let free_end = acting.vehicle_rate - (quiet_rate - acting.drift).shift_down(self.rate_shift);
         let brake = brake.shift_down(self.rate_shift);
         let share = self.friction.mean(state.relative_rate, free_end, brake);
@@ -177,12 +176,13 @@ impl<N: Number> Law<N> {
     fn move_free(&self, state: &mut State<N>, acting: &Acting<N>) -> Moved<N> {
         let free = &self.free;
         let heads = Heads::of(&state.free);
-        let quiet_rate = free.gimbal_rate(&heads, acting.other - state.torque);
+        let quiet_change = acting.other - state.torque;
+        let quiet_rate = free.gimbal_rate(&heads, quiet_change);
         let brake = free.gimbal_rate_gain.at(&[acting.friction_level]);
         let torque = self.torque(state, acting, quiet_rate, brake);
         let change = torque - state.torque;
         let gimbal_angle = state.offset + free.gimbal_angle(&heads, change);
-        let sensed_rate = free.gimbal_rate(&heads, change);
+        let sensed_rate = quiet_rate + free.gimbal_rate_gain.at(&[change - quiet_change]);
         let gyro_angle = free.gyro_angle(&heads, change);
         free.advance(&mut state.free, &heads, change);
         state.torque = torque;
@@ -306,4 +306,14 @@ impl<N: Number> Law<N> {
             stop_change_age: N::ZERO,
         }
     }
+}
+
+/// phi beyond the small angles: flagged, and kept within +-1 rad.
+#[cold]
+fn confine_angle<N: Number>(wide: N::Wide, faults: &mut Faults) -> N {
+    *faults |= Faults::SMALL_ANGLE_EXCEEDED;
+    if N::is_full(wide) {
+        *faults |= Faults::ARITHMETIC_SATURATED;
+    }
+    N::narrow(wide).least(N::ONE).most(-N::ONE)
 }

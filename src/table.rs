@@ -14,10 +14,11 @@ struct Chord<N: Number> {
 }
 
 /// Octaves that a [`PowerTable`] covers; below them it goes on along the lowest chord.
-const OCTAVES: i32 = 6;
+const OCTAVES: i32 = 8;
+/// A power of two, so that a mask keeps every index inside.
 const CHORDS: usize = 16 * OCTAVES.unsigned_abs() as usize;
 
-/// A rising concave function on the six octaves below a largest argument.
+/// A rising concave function on the eight octaves below a largest argument.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PowerTable<N: Number> {
     first: i32,
@@ -27,7 +28,7 @@ pub(crate) struct PowerTable<N: Number> {
 impl<N: Number> PowerTable<N> {
     /// Tabulates `function` up to `largest`, both in SI; arguments and values have the full scales `2^from` and `2^to`.
     pub(crate) fn build(largest: f64, from: i32, to: i32, function: impl Fn(f64) -> f64) -> Self {
-        let first = N::quantise(largest, from).sixteenth() + 1 - 16 * OCTAVES;
+        let first = N::quantise(1.001 * largest, from).sixteenth() + 1 - 16 * OCTAVES;
         let mut chords = [Chord::default(); CHORDS];
         for (chord, step) in chords.iter_mut().zip(first..) {
             let left = N::sixteenth_start(step).to_f64(from);
@@ -42,9 +43,10 @@ impl<N: Number> PowerTable<N> {
     }
 
     /// The function's value. In fixed point `to` must be a full scale in which every slope is below 1.
+    #[inline(always)]
     pub(crate) fn at(&self, argument: N) -> N {
         let segment = (argument.sixteenth() - self.first).max(0).unsigned_abs() as usize;
-        let chord = &self.chords[segment.min(CHORDS - 1)];
+        let chord = &self.chords[segment & (CHORDS - 1)];
         chord.offset + N::narrow(chord.slope * argument)
     }
 }

@@ -11,7 +11,6 @@ use crate::units::Units;
 /// (6.1) and (6.2) cross where one ends and the other begins, so that their larger one is the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law<N: Number> {
-    sqrt: SqrtTable<N>,
     largest_radial: N,
     /// `F_s` of `|a_z|` and `A_r`, less its part from the preload.
     static_load: Row<N, 2>,
@@ -21,12 +20,18 @@ pub(crate) struct Law<N: Number> {
     axial_preload: N,
     /// (6.2)'s load of `A_r`.
     radial_load: Row<N, 1>,
-    /// `c n F_s^0.33`, n the number of bearings.
-    power: PowerTable<N>,
     /// From the product of power and load to the full scale of torques.
     shift: u32,
     viscous_break: N,
     viscous_low: N,
+}
+
+/// Its tables.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Tables<N: Number> {
+    sqrt: SqrtTable<N>,
+    /// `c n F_s^0.33`, n the number of bearings.
+    power: PowerTable<N>,
     viscous_high: PowerTable<N>,
 }
 
@@ -37,7 +42,7 @@ pub(crate) struct Level<N> {
 }
 
 impl<N: Number> Law<N> {
-    pub(crate) fn build(config: &Config, units: &Units) -> Self {
+    pub(crate) fn build(config: &Config, units: &Units) -> (Self, Tables<N>) {
         let bearing = &config.bearing;
         let count = f64::from(bearing.count);
         let range = &config.range;
@@ -60,36 +65,39 @@ impl<N: Number> Law<N> {
         let viscous = |rate: f64| count * bearing.viscous_torque_nm(rate);
         let viscous_break = bearing.viscous_break_radps();
         let accel = [units.accel; 2];
-        Self {
+        let tables = Tables {
             sqrt: SqrtTable::build(),
+            power: PowerTable::build(largest_static, static_scale, power_scale, power),
+            viscous_high: PowerTable::build(range.rate_radps, units.rate, units.torque, |rate| {
+                // The branch above the break, also where a grid cell begins below it.
+                viscous(viscous_break * (1.0 + 1e-12)) * libm::pow(rate / viscous_break, 2.0 / 3.0)
+            }),
+        };
+        let law = Self {
             largest_radial: N::quantise(range.radial_accel_mps2, units.accel),
             static_load: Row::build([fa * share, fr * share], accel, static_scale),
             static_preload: N::quantise(smallest_static, static_scale),
             axial_load: Row::build([ta * share, -tr * share], accel, load_scale),
             axial_preload: N::quantise(ta * preload, load_scale),
             radial_load: Row::build([share], [units.accel], load_scale),
-            power: PowerTable::build(largest_static, static_scale, power_scale, power),
             shift: (power_scale + load_scale - units.torque).unsigned_abs(),
             viscous_break: N::quantise(viscous_break.min(range.rate_radps), units.rate),
             viscous_low: N::quantise(viscous(0.0), units.torque),
-            viscous_high: PowerTable::build(range.rate_radps, units.rate, units.torque, |rate| {
-                // The branch above the break, also where a grid cell begins below it.
-                viscous(viscous_break * (1.0 + 1e-12)) * libm::pow(rate / viscous_break, 2.0 / 3.0)
-            }),
-        }
+        };
+        (law, tables)
     }
 
     /// Friction level under the specific force at the relative rate `rate`.
     #[inline(always)]
-    pub(crate) fn at(&self, accel_x: N, accel_y: N, accel_z: N, rate: N) -> Level<N> {
-        let radial = accel_x.hypot(accel_y, &self.sqrt);
+    pub(crate) fn at(&self, tables: &Tables<N>, [accel_x, accel_y, accel_z]: [N; 3], rate: N) -> Level<N> {
+        let radial = accel_x.hypot(accel_y, &tables.sqrt);
         let table_end = radial > self.largest_radial;
         let radial = radial.least(self.largest_radial);
         let axial = accel_z.abs();
-        let power = self.power.at(self.static_preload + self.static_load.at(&[axial, radial]));
+        let power = tables.power.at(self.static_preload + self.static_load.at(&[axial, radial]));
         let load = (self.axial_preload + self.axial_load.at(&[axial, radial])).most(self.radial_load.at(&[radial]));
         let speed = rate.abs();
-        let viscous = if speed > self.viscous_break { self.viscous_high.at(speed) } else { self.viscous_low };
+        let viscous = if speed > self.viscous_break { tables.viscous_high.at(speed) } else { self.viscous_low };
         Level { torque: power.times(load).shift_up(self.shift) + viscous, table_end }
     }
 }

@@ -223,8 +223,13 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
-    fn count(left: Self, right: Self, _scale: Coef, carry: &mut Self) -> i32 {
-        let exact = i64::from(left.0) * i64::from(right.0) + i64::from(carry.0);
+    fn count_scaled(signal: Self, _scale: Coef) -> Self {
+        signal
+    }
+
+    #[inline(always)]
+    fn count(left: Self, scaled: Self, carry: &mut Self) -> i32 {
+        let exact = i64::from(left.0) * i64::from(scaled.0) + i64::from(carry.0);
         *carry = Self((exact & i64::from(LARGEST)) as i32);
         (exact >> 31) as i32
     }

@@ -121,8 +121,13 @@ impl Number for f32 {
     }
 
     #[inline(always)]
-    fn count(left: f32, right: f32, scale: f32, carry: &mut f32) -> i32 {
-        let exact = left * right * scale + *carry;
+    fn count_scaled(signal: f32, scale: f32) -> f32 {
+        signal * scale
+    }
+
+    #[inline(always)]
+    fn count(left: f32, scaled: f32, carry: &mut f32) -> i32 {
+        let exact = left * scaled + *carry;
         let whole = exact as i32;
         // A whole f32 above 2^24 has no fraction to lose.
         *carry = exact - whole as f32;
