@@ -18,6 +18,9 @@ usage: cargo xtask <task>
 
   test [--only TEXT]   every check; with --only, the stages whose name contains TEXT
   list                 names of the stages
+  cost [--target BOARD] [--json]
+                       instructions, flash, state and stack of the step on an emulated board
+  budget               writes the figures of every board to firmware/budget/, which `test` compares with
   deny                 cargo-deny on the whole tree; installs it if absent (minutes)
 ";
 
@@ -31,6 +34,8 @@ fn main() -> ExitCode {
             Stages::all().list();
             ExitCode::SUCCESS
         }
+        ["cost", rest @ ..] => cost(rest),
+        ["budget"] => task(&target::budget::write),
         ["deny"] => task(&host::deny::install_and_check),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
@@ -49,6 +54,23 @@ fn test(stages: &Stages) -> ExitCode {
         return ExitCode::from(2);
     }
     ExitCode::from(stages.run())
+}
+
+/// `cost`: for the default board unless another is named.
+fn cost(words: &[&str]) -> ExitCode {
+    let (mut board, mut json) = (target::DEFAULT_BOARD, false);
+    let mut words = words.iter();
+    while let Some(&word) = words.next() {
+        match (word, words.len()) {
+            ("--json", _) => json = true,
+            ("--target", 1..) => board = words.next().copied().unwrap_or_default(),
+            _ => {
+                eprint!("`cost` does not take `{word}`\n\n{USAGE}");
+                return ExitCode::from(2);
+            }
+        }
+    }
+    task(&|| target::cost::print(board, json))
 }
 
 /// One task by itself, with the exit status of its error.

@@ -65,6 +65,6 @@ fn echo(command: &Command) -> String {
         .collect();
     let line = words.join(" ");
     let short = Path::new(&words[0]).file_name().map_or(words[0].clone(), |name| name.to_string_lossy().into_owned());
-    println!("$ {short}{}", &line[words[0].len()..]);
+    eprintln!("$ {short}{}", &line[words[0].len()..]);
     line
 }

@@ -40,10 +40,14 @@ impl Stages {
             Stage { name: "lints", run: host::lints::check },
             Stage { name: "documents", run: host::documents::check },
             Stage { name: "oldest-rust", run: host::oldest_rust::check },
+            Stage { name: "digests", run: host::digests::check },
             Stage { name: "target-setup", run: target::setup::check },
             Stage { name: "target-lints", run: target::lints::check },
             Stage { name: "target-counter", run: target::calibration::check },
             Stage { name: "target-addresses", run: target::addresses::check },
+            Stage { name: "target-digests", run: target::digests::check },
+            Stage { name: "target-gates", run: target::gates::check },
+            Stage { name: "target-budget", run: target::budget::check },
             Stage { name: "tests", run: host::tests::run },
         ])
     }

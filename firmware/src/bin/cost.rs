@@ -35,10 +35,10 @@ mod target {
         }
 
         /// Mean in thousandths of an instruction: text of a float would need the code to print it.
-        fn print(&self, name: &str, number: &str) {
+        fn print(&self, kind: &str, name: &str, number: &str) {
             if self.steps > 0 {
                 let mean_milli = self.sum * 1000 / u64::from(self.steps);
-                println!("cost {name} {number} {} {} {mean_milli} {}", self.steps, self.min, self.max);
+                println!("{kind} {name} {number} {} {} {mean_milli} {}", self.steps, self.min, self.max);
             }
         }
     }
@@ -80,10 +80,8 @@ mod target {
                 events.add(count);
             }
         }
-        all.print(case.name, number);
-        if events.steps > 0 {
-            println!("cost-events {} {number} {} {} {}", case.name, events.steps, events.min, events.max);
-        }
+        all.print("cost", case.name, number);
+        events.print("cost-events", case.name, number);
         Ok(())
     }
 }

@@ -14,7 +14,16 @@ mod target {
     #![allow(unsafe_code)]
 
     use gimbal_servo::{Fixed, Input, Law, Number, Output, State};
+    #[cfg(not(feature = "panic-allowed"))]
     use panic_never as _;
+
+    #[cfg(feature = "panic-allowed")]
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo) -> ! {
+        loop {
+            core::hint::spin_loop();
+        }
+    }
 
     #[gimbal_firmware::start]
     fn main() -> ! {

@@ -1,7 +1,16 @@
 //! What the images contain, read from the binary itself.
 
+mod code;
+mod reach;
+mod riscv;
+mod thumb;
+
+pub(crate) use code::functions;
+pub(crate) use reach::Reach;
+
 use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -9,6 +18,10 @@ use std::path::Path;
 pub(crate) struct Image {
     pub(crate) sections: Vec<Section>,
     pub(crate) symbols: Vec<Symbol>,
+    /// Thumb code, else RISC-V.
+    pub(crate) is_thumb: bool,
+    /// Where code (false) and data among code (true) start, from the mapping symbols `$t`, `$x` and `$d`.
+    mapping: BTreeMap<u32, bool>,
 }
 
 /// A part of the image that takes memory on the board.
@@ -34,7 +47,7 @@ impl Image {
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let bytes = fs::read(path).with_context(|| path.display().to_string())?;
         let file = object::File::parse(bytes.as_slice())?;
-        let thumb = file.architecture() == object::Architecture::Arm;
+        let is_thumb = file.architecture() == object::Architecture::Arm;
         let mut sections = Vec::new();
         for section in file.sections() {
             let allocated = matches!(section.flags(), object::SectionFlags::Elf { sh_flags, .. } if sh_flags.contains(object::elf::SHF_ALLOC));
@@ -50,9 +63,15 @@ impl Image {
             });
         }
         let mut symbols = Vec::new();
+        let mut mapping = BTreeMap::new();
         for symbol in file.symbols() {
             let is_function = symbol.kind() == SymbolKind::Text;
-            let bit = u64::from(thumb && is_function);
+            let bit = u64::from(is_thumb && is_function);
+            match symbol.name()? {
+                name if name.starts_with("$d") => drop(mapping.insert(u32::try_from(symbol.address())?, true)),
+                name if name.starts_with('$') => drop(mapping.insert(u32::try_from(symbol.address())?, false)),
+                _ => {}
+            }
             symbols.push(Symbol {
                 name: symbol.name()?.to_owned(),
                 address: u32::try_from(symbol.address() & !bit)?,
@@ -60,7 +79,19 @@ impl Image {
                 is_function,
             });
         }
-        Ok(Self { sections, symbols })
+        Ok(Self { sections, symbols, is_thumb, mapping })
+    }
+
+    /// If `address` lies in data among code, where that data ends.
+    fn data_until(&self, address: u32) -> Option<u32> {
+        let (_, &is_data) = self.mapping.range(..=address).next_back()?;
+        let end = self.mapping.range(address + 1..).next().map_or(u32::MAX, |(&end, _)| end);
+        is_data.then_some(end)
+    }
+
+    /// Bytes of all sections whose name starts so.
+    pub(crate) fn section_bytes(&self, prefix: &str) -> u32 {
+        self.sections.iter().filter(|section| section.name.starts_with(prefix)).map(|section| section.bytes).sum()
     }
 
     /// The one symbol of that name.

@@ -1,6 +1,7 @@
 //! Checks that need the Rust toolchain alone.
 
 pub(crate) mod deny;
+pub(crate) mod digests;
 pub(crate) mod documents;
 pub(crate) mod format;
 pub(crate) mod licences;
