@@ -1,2 +1,40 @@
-//! `gimbal`
-fn main() {}
+//! `gimbal`: the model of a gimballed platform's servo, on the command line.
+//!
+//! Exit status: 0 done, 1 it ran and the answer is "fails", 2 the input or the call is wrong, 3 the environment
+//! failed, 130 interrupted. Without a subcommand it runs the main job, `run`.
+
+#![forbid(unsafe_code)]
+
+mod convert;
+mod exit;
+mod interrupt;
+mod progress;
+mod report;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Model of a gimballed inertial platform's servo: attitude, velocity and position error under acceleration and rate.
+#[derive(Debug, Parser)]
+#[command(name = "gimbal", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Turns a foreign CSV file into a log: names, units, axes, one constant rate.
+    Convert(convert::Args),
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    interrupt::watch();
+    let result = match &cli.command {
+        Some(Command::Convert(args)) => convert::convert(args),
+        None => Ok(()),
+    };
+    exit::code(result)
+}

@@ -6,8 +6,8 @@ mod map;
 mod resample;
 mod unit;
 
-pub use altos::{GimbalAxis, header_names, is_altos};
+pub use altos::{GimbalAxis, is_altos};
 pub use frame::turn_into_stable_member;
-pub use map::{ColumnMap, Source, read};
+pub use map::{ColumnMap, Source, header_names, read};
 pub use resample::{Resampled, Span, resample};
 pub use unit::{NAMES as UNIT_NAMES, scale};

@@ -3,8 +3,6 @@
 //! Body axes there: x along the rocket, y and z across it; roll, pitch and yaw are the rates about x, y and z.
 //! Whichever body axis is the gimbal's, gimbal axes are a rotation of body axes: determinant +1.
 
-use std::path::Path;
-
 use super::map::{ColumnMap, Source};
 use crate::Column;
 
@@ -78,18 +76,6 @@ impl ColumnMap {
         self.0.retain(|(column, source)| *column != Column::Temperature || names.contains(&source.name));
         self
     }
-}
-
-/// The names in the header of a CSV file, if it has one.
-#[must_use]
-pub fn header_names(path: &Path) -> Option<Vec<String>> {
-    let file = std::fs::File::open(path).ok()?;
-    let mut found = None;
-    let _ = crate::Reader::with_layout(file, path, |_, names| {
-        found = Some(names.clone());
-        Ok(crate::Layout::new(names))
-    });
-    found
 }
 
 #[cfg(test)]

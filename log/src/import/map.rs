@@ -1,6 +1,5 @@
 //! Which column of a foreign file becomes which column of the log.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -85,25 +84,29 @@ impl ColumnMap {
     }
 }
 
-/// Reads a foreign CSV file through a map; its time stamps stay as they are.
+/// Reads a foreign CSV file through a map; its time stamps stay as they are. `file` is its name in messages.
 ///
 /// # Errors
 /// As [`Reader::with_layout`] and [`Reader::next_row`], and a map that does not fit the file.
-pub fn read(path: &Path, map: &ColumnMap) -> Result<Log, LogError> {
-    let file = File::open(path).map_err(|error| LogError::file(path, error.into()))?;
-    read_from(file, path, map)
-}
-
-fn read_from(source: impl Read, file: &Path, map: &ColumnMap) -> Result<Log, LogError> {
+pub fn read(source: impl Read, file: &Path, map: &ColumnMap) -> Result<Log, LogError> {
     map.check().map_err(|wrong| LogError::file(file, Problem::Map(wrong)))?;
     Log::read(Reader::with_layout(source, file, |file, names| map.layout(file, names))?)
+}
+
+/// The names in the header of any CSV file; `file` is its name in messages.
+///
+/// # Errors
+/// The source cannot be read, or its header is not one.
+pub fn header_names(source: impl Read, file: &Path) -> Result<Vec<String>, LogError> {
+    let reader = Reader::with_layout(source, file, |_, names| Ok(Layout::new(names)))?;
+    Ok(reader.layout().names().to_vec())
 }
 
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
-    use super::{ColumnMap, Source, read_from};
+    use super::{ColumnMap, Source, read};
     use crate::Column;
 
     fn source(name: &str, unit: &str, sign: f64) -> Source {
@@ -118,7 +121,7 @@ mod tests {
             (Column::VehicleRate, source("rate", "dps", 1.0)),
         ]);
         let text = "t_ms,ax,rate,accel_z_mps2,note\n0,1,180,9.8,a\n1,,,,b\n";
-        let log = read_from(text.as_bytes(), Path::new("x.csv"), &map).expect("reads");
+        let log = read(text.as_bytes(), Path::new("x.csv"), &map).expect("reads");
         let first = log.row(0);
         assert!((first[Column::AccelX] + 9.806_65).abs() < 1e-12);
         assert!((first[Column::VehicleRate] - std::f64::consts::PI).abs() < 1e-12);
@@ -131,7 +134,7 @@ mod tests {
     fn contract_a_wrong_map_is_told_with_what_would_be_right() {
         let told = |column, name: &str, unit: &str| {
             let map = ColumnMap(vec![(Column::Time, source("t", "s", 1.0)), (column, source(name, unit, 1.0))]);
-            read_from(&b"t,gyro_pitch\n0,0\n"[..], Path::new("x.csv"), &map).expect_err("wrong").to_string()
+            read(&b"t,gyro_pitch\n0,0\n"[..], Path::new("x.csv"), &map).expect_err("wrong").to_string()
         };
         assert_eq!(
             told(Column::VehicleRate, "gyro_pich", "dps"),

@@ -29,10 +29,23 @@ pub struct Resampled {
 }
 
 impl Resampled {
+    /// A log that is at its rate already, with everything in it.
+    #[must_use]
+    pub fn untouched(source: &Log) -> Self {
+        Self {
+            log: source.clone(),
+            source: source.time.clone(),
+            averaged_rows: 0,
+            bridged: Vec::new(),
+            bridged_missing: Vec::new(),
+            dropped: Vec::new(),
+        }
+    }
+
     /// Seconds that are crossed by lines of 1.5 source periods and more.
     #[must_use]
     pub fn bridged_s(&self) -> f64 {
-        self.bridged.iter().map(|span| span.to_s - span.from_s).sum()
+        self.bridged.iter().fold(0.0, |sum, span| sum + span.to_s - span.from_s)
     }
 }
 

@@ -1,0 +1,65 @@
+//! How the program ends: one line on standard error, and the exit status that belongs to it.
+
+use std::process::ExitCode;
+
+use gimbal_log::LogError;
+
+use crate::interrupt;
+
+/// Why the program cannot do what was asked.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The input or the call is wrong: status 2.
+    Input(anyhow::Error),
+    /// The environment failed: status 3.
+    Environment(anyhow::Error),
+    /// Interrupted from the keyboard: status 130.
+    Interrupted,
+}
+
+impl From<LogError> for Failure {
+    fn from(error: LogError) -> Self {
+        if interrupt::raised() {
+            Self::Interrupted
+        } else if error.is_environment() {
+            Self::Environment(error.into())
+        } else {
+            Self::Input(error.into())
+        }
+    }
+}
+
+impl Failure {
+    /// The input or the call is wrong.
+    pub(crate) fn input(message: impl Into<String>) -> Self {
+        Self::Input(anyhow::Error::msg(message.into()))
+    }
+
+    /// A file cannot be written.
+    pub(crate) fn write(path: &std::path::Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |error| {
+            let message = anyhow::anyhow!("{}: cannot be written: {error}", path.display());
+            match error.kind() {
+                _ if interrupt::raised() => Self::Interrupted,
+                std::io::ErrorKind::NotFound
+                | std::io::ErrorKind::PermissionDenied
+                | std::io::ErrorKind::NotADirectory
+                | std::io::ErrorKind::IsADirectory => Self::Input(message),
+                _ => Self::Environment(message),
+            }
+        }
+    }
+}
+
+/// Tells the failure and gives the exit status.
+pub(crate) fn code(result: Result<(), Failure>) -> ExitCode {
+    let (message, status) = match result {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Input(error)) => (error.to_string(), 2),
+        Err(Failure::Environment(error)) => (error.to_string(), 3),
+        Err(Failure::Interrupted) => ("interrupted; nothing was written".to_owned(), 130),
+    };
+    eprintln!("error: {}", message.lines().collect::<Vec<_>>().join("; "));
+    ExitCode::from(status)
+}
