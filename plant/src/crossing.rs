@@ -3,7 +3,7 @@
 use crate::guard::{Exit, GUARDS, Guard};
 use crate::runge_kutta::{Dense, Field, Trial};
 use crate::system::Motion;
-use crate::vector::{N, Vector};
+use crate::vector::{PHI_RATE, THETA, TORQUE, Vector};
 
 /// Where within a step the guards are looked at, beside its end.
 const LOOKS: [f64; 3] = [0.25, 0.5, 0.75];
@@ -41,14 +41,17 @@ fn look(
         .or_else(|| outside(trial.step_s, &trial.end))
 }
 
-/// Cubic through both ends of a step: good enough to see a crossing, not to place it.
+/// What guards depend on.
+const GUARDED: [usize; 3] = [PHI_RATE, THETA, TORQUE];
+
+/// Cubic through both ends of a step, of what guards depend on: good enough to see a crossing, not to place it.
 fn hermite(share: f64, trial: &Trial, slope: &Vector, end_slope: &Vector) -> Vector {
     let (rest, step_s) = (1.0 - share, trial.step_s);
-    let mut y = [0.0; N];
-    for (index, entry) in y.iter_mut().enumerate() {
+    let mut y = trial.start;
+    for index in GUARDED {
         let rise = trial.end[index] - trial.start[index];
         let bulge = rest * (step_s * slope[index] - rise) + share * (rise - step_s * end_slope[index]);
-        *entry = trial.start[index] + share * rise + share * rest * bulge;
+        y[index] += share * rise + share * rest * bulge;
     }
     y
 }

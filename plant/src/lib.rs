@@ -38,4 +38,4 @@ pub use effects::{Block, Bound, Effect, EffectError, Parameter};
 pub use plant::Plant;
 pub use row::{Between, Row};
 pub use sample::{Logged, Sample};
-pub use state::{State, Stop, StopEvent, StopEventKind};
+pub use state::{Quantity, State, Stop, StopEvent, StopEventKind};

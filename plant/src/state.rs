@@ -3,7 +3,7 @@
 use crate::effects::loop_delay::History;
 use crate::effects::measurement::Rows;
 use crate::effects::presliding::Reversal;
-use crate::vector::Vector;
+use crate::vector::{INTEGRATOR, PHI, PHI_RATE, RELATIVE, SECTION, THETA, THETA_RATE, TORQUE, Vector};
 
 /// Where the gyro's float is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -63,6 +63,42 @@ pub(crate) struct Mode {
     pub(crate) reversal: Reversal,
 }
 
+/// An integrated quantity of the loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// phi [rad].
+    GimbalAngle,
+    /// phi' [rad/s].
+    GimbalRate,
+    /// theta [rad].
+    GyroAngle,
+    /// theta' [rad/s].
+    GyroRate,
+    /// State of the section `(1 + Ti s) / (1 + Tj s)`, 0 to 3 for T6 to T9 [N m/s]; zero when settled.
+    Section(usize),
+    /// The integrator of F(s), which carries a steady disturbance [N m].
+    Integrator,
+    /// Motor torque behind the lag [N m].
+    MotorTorque,
+    /// rel, vehicle against stable member [rad].
+    RelativeAngle,
+}
+
+impl Quantity {
+    fn index(self) -> usize {
+        match self {
+            Self::GimbalAngle => PHI,
+            Self::GimbalRate => PHI_RATE,
+            Self::GyroAngle => THETA,
+            Self::GyroRate => THETA_RATE,
+            Self::Section(section) => SECTION + section.min(INTEGRATOR - SECTION - 1),
+            Self::Integrator => INTEGRATOR,
+            Self::MotorTorque => TORQUE,
+            Self::RelativeAngle => RELATIVE,
+        }
+    }
+}
+
 /// State of a [`Plant`](crate::Plant); plain data, which may be cloned to branch a run.
 #[derive(Debug, Clone)]
 pub struct State {
@@ -102,6 +138,23 @@ impl State {
     #[must_use]
     pub fn integrator_steps(&self) -> u64 {
         self.steps
+    }
+
+    /// One integrated quantity.
+    #[must_use]
+    pub fn value(&self, quantity: Quantity) -> f64 {
+        self.y[quantity.index()]
+    }
+
+    /// Sets one integrated quantity: a run that begins in an estimated state.
+    ///
+    /// Beyond the stops theta is put back by the contact that follows at once.
+    pub fn set(&mut self, quantity: Quantity, value: f64) {
+        self.y[quantity.index()] = value;
+        if let Some(past) = &mut self.past {
+            past.begin(&self.y);
+        }
+        self.note_peaks();
     }
 
     pub(crate) fn note_peaks(&mut self) {

@@ -14,7 +14,7 @@ pub(crate) const PHI_RATE: usize = 1;
 pub(crate) const THETA: usize = 2;
 /// theta' [rad/s].
 pub(crate) const THETA_RATE: usize = 3;
-/// Lag states of the four sections `(1 + Ti s) / (1 + Tj s)` of F, the integrator `(1 + T5 s) / s` after them [N m].
+/// Lag states of the four sections `(1 + Ti s) / (1 + Tj s)` of F [N m/s].
 pub(crate) const SECTION: usize = 4;
 /// The integrator of F [N m].
 pub(crate) const INTEGRATOR: usize = 8;

@@ -161,6 +161,23 @@ fn peak(samples: &[Sample], of: impl Fn(&Sample) -> f64) -> f64 {
 }
 
 #[test]
+fn closed_form_effects_add_up_in_any_order() {
+    let add = |plant: Plant, effect: Effect| plant.with_effect(effect, &effect.typical()).unwrap();
+    let forward = Effect::all().fold(rig::nominal(), add);
+    let mut effects: Vec<Effect> = Effect::all().collect();
+    effects.reverse();
+    let backward = effects.into_iter().fold(rig::nominal(), add);
+    let rows: Vec<_> = rig::flight().into_iter().take(200).collect();
+    let a: Vec<Sample> = forward.run(rows.iter().copied()).collect();
+    let b: Vec<Sample> = backward.run(rows).collect();
+    let angle = |samples: &[Sample]| peak(samples, |sample| sample.gimbal_angle_rad);
+    assert!(angle(&a) > 1e-4 && angle(&a) < 0.1);
+    for (a, b) in a.iter().zip(&b) {
+        rig::assert_close(a.gimbal_angle_rad, b.gimbal_angle_rad, 1e-12);
+    }
+}
+
+#[test]
 fn closed_form_wrong_values_are_named() {
     let plant: Plant = rig::nominal();
     let effect = |name| Effect::from_name(name).unwrap();

@@ -1,6 +1,6 @@
 //! How inputs act: between rows, about the spin axis, and through iterators.
 
-use gimbal_plant::{Between, Logged, Plant, Row, Sample};
+use gimbal_plant::{Between, Logged, Plant, Quantity, Row, Sample, Stop};
 use gimbal_servo::{Config, Interpolation};
 
 fn rows() -> Vec<Row> {
@@ -100,4 +100,29 @@ fn closed_form_on_the_stop_the_spin_rate_decides_the_release() {
     let (early_s, before, after) = release(&config);
     let limit = config.gyro.stop_angle_rad;
     assert!(early_s < late_s && before > limit && after < limit, "{before} {after}");
+}
+
+#[test]
+fn closed_form_a_state_set_by_hand_is_the_settled_one() {
+    let row = Row { accel_y_mps2: 50.0, vehicle_rate_radps: 0.3, ..Row::default() };
+    let plant = Plant::new(&Config::consistent()).unwrap();
+    let mut settled = plant.settled(&row);
+    let mut by_hand = plant.start();
+    let torque = plant.sample(&settled, &row).motor_torque_nm;
+    by_hand.set(Quantity::Integrator, torque);
+    by_hand.set(Quantity::MotorTorque, torque);
+    assert_eq!(plant.step(&mut by_hand, &row, &row), plant.step(&mut settled, &row, &row));
+    assert!(settled.value(Quantity::GimbalAngle).abs() < 1e-15);
+}
+
+#[test]
+fn closed_form_a_theta_set_beyond_the_stop_is_put_on_it() {
+    let config = Config::consistent().without_friction().without_unbalance();
+    let plant = Plant::new(&config).unwrap();
+    let mut state = plant.start();
+    state.set(Quantity::GyroAngle, -0.02);
+    state.set(Quantity::GyroRate, -1.0);
+    let sample = plant.step(&mut state, &Row::default(), &Row::default());
+    assert_eq!(state.events()[0].side, Stop::Negative);
+    assert!(sample.gyro_angle_rad.abs() <= config.gyro.stop_angle_rad);
 }

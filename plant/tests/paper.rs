@@ -78,7 +78,8 @@ fn paper_coefficients_as_printed_contradict_the_figures() {
     free.gyro.stop_angle_rad = NO_STOP_RAD;
     let (small, state) = step_of(&printed, 1e5, 2000);
     assert!(state.events().len() >= 2, "limited");
-    assert!(peak_phi_deg(&small) > 0.15);
+    // on the stop the gimbal yields further than the 0.1523 deg of the free loop
+    assert_printed(peak_phi_deg(&small), 0.4032, 1e-4);
     let (small, _) = step_of(&free, 1e5, 2000);
     assert_printed(peak_phi_deg(&small), 0.1523, 1e-4);
     // 0.657 is H/Bo times the peak of phi; the peak of theta itself is 0.1 % lower

@@ -46,6 +46,13 @@ impl History {
         Self { span_s, before: [y[THETA], y[TORQUE]], pieces: VecDeque::new(), felt_s: VecDeque::new() }
     }
 
+    /// Before its first step a run may still be given another beginning.
+    pub(crate) fn begin(&mut self, y: &Vector) {
+        if self.pieces.is_empty() {
+            self.before = [y[THETA], y[TORQUE]];
+        }
+    }
+
     pub(crate) fn keep(&mut self, from_s: f64, dense: &Dense) {
         let (step_s, start, coefficients) = dense.of([THETA, TORQUE]);
         self.pieces.push_back(Piece { from_s, step_s, start, coefficients });
