@@ -89,6 +89,8 @@ fn examine(image: &Image, names: Vec<String>, address: u32, code: &[u8]) -> Resu
             Effect::Grow(more) => function.frame_bytes += more,
             Effect::Unknown(why) => function.obstacles.push(format!("{why} at {here:#x}")),
             Effect::Jump(target) if target >= address && target - address < bytes => {}
+            // Armv6-M has no other far jump than `bl`; one to the first instruction is taken for recursion.
+            Effect::Call(target) if target > address && target - address < bytes => {}
             Effect::Call(target) | Effect::Jump(target) => function.calls.push(target),
             Effect::Indirect => function.obstacles.push(format!("indirect call at {here:#x}")),
         }
