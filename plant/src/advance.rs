@@ -58,7 +58,7 @@ impl Advance<'_> {
         let motion = self.motion(state.mode, state.past.as_ref());
         let first_slope = slope.unwrap_or_else(|| motion.rate(tau_s, &state.y));
         let step_s = share_of(end_s - tau_s, state.step_s.min(self.longest_s()));
-        let trial = Trial::take(&motion, tau_s, &state.y, &first_slope, step_s);
+        let mut trial = Trial::take(&motion, tau_s, &state.y, &first_slope, step_s);
         let error = trial.error(&state.peak) / self.tolerance;
         let factor = if error > 0.0 { (0.9 * error.powf(-0.125)).clamp(0.2, 6.0) } else { 6.0 };
         state.steps += 1;
@@ -70,26 +70,29 @@ impl Advance<'_> {
         // At the largest factor the step was cut short by the row and says nothing against the longer one.
         let proposal = if factor < 6.0 { step_s * factor } else { state.step_s.max(step_s * factor) };
         let watched = *crossings < MOST_CROSSINGS;
-        let last_slope = motion.rate(tau_s + step_s, &trial.end);
+        let mut last_slope = motion.rate(tau_s + step_s, &trial.end);
         let crossing = watched.then(|| crossing::first(&motion, tau_s, &trial, &first_slope, &last_slope)).flatten();
-        let (reached, last_slope, exit) = match crossing {
-            Some((exit, None)) => (None, first_slope, Some(exit)),
-            Some((exit, Some(cut))) => {
-                let slope = motion.rate(tau_s + cut.step_s, &cut.end);
-                (Some(cut), slope, Some(exit))
+        let mut taken = true;
+        let exit = crossing.map(|(exit, cut)| {
+            match cut {
+                Some(cut) => {
+                    last_slope = motion.rate(tau_s + cut.step_s, &cut.end);
+                    trial = cut;
+                }
+                None => taken = false,
             }
-            None => (Some(trial), last_slope, None),
-        };
-        let dense = match &reached {
-            Some(reached) if state.past.is_some() => Some(reached.dense(&motion, &last_slope)),
-            _ => None,
-        };
+            exit
+        });
+        let dense = (taken && state.past.is_some()).then(|| trial.dense(&motion, &last_slope));
         state.step_s = proposal.min(LONGEST_STEP_S);
-        let taken_s = reached.as_ref().map_or(0.0, |reached| reached.step_s);
         // The last step ends on the end of the span to the bit.
-        let reached_s = if taken_s >= end_s - tau_s { end_s } else { tau_s + taken_s };
-        if let Some(reached) = reached {
-            state.y = reached.end;
+        let reached_s = match taken {
+            true if trial.step_s >= end_s - tau_s => end_s,
+            true => tau_s + trial.step_s,
+            false => tau_s,
+        };
+        if taken {
+            state.y = trial.end;
         }
         if let (Some(past), Some(dense)) = (&mut state.past, dense) {
             past.keep(self.start_s + tau_s, &dense);
