@@ -20,7 +20,7 @@ pub(crate) const GRAVITY_MPS2: f64 = 9.806_65;
 const POUND_PER_INCH2_PA: f64 = 6_894.757_293_168_361;
 /// nu n at the break [cSt rpm].
 const BREAK_CST_RPM: f64 = 2000.0;
-/// 1 rad/s [rpm].
+/// 1 rad/s in revolutions a minute.
 const RADPS_RPM: f64 = 30.0 / std::f64::consts::PI;
 
 /// All bearings of the axis together.
