@@ -11,7 +11,7 @@
 //! the zone within the period spends equal times on either side of zero in it.
 
 use crate::number::Number;
-use crate::row::Row;
+use crate::row::ScaledRow;
 use crate::units::Units;
 
 /// The clamp.
@@ -20,21 +20,21 @@ pub(crate) struct Law<N: Number> {
     /// `w_s`.
     slip_rate: N,
     /// `1 / w_s`.
-    steepness: Row<N, 1>,
+    steepness: ScaledRow<N, 1>,
 }
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(slip_rate_radps: f64, units: &Units) -> Self {
         Self {
             slip_rate: N::quantise(slip_rate_radps, units.rate),
-            steepness: Row::build([1.0 / slip_rate_radps], [units.rate], 0),
+            steepness: ScaledRow::build([1.0 / slip_rate_radps], [units.rate], 0),
         }
     }
 
     /// `clamp(w / w_s, -1, 1)`.
     #[inline(always)]
     pub(crate) fn clamp(&self, rate: N) -> N {
-        self.steepness.at(&[rate]).least(N::ONE).most(-N::ONE)
+        self.steepness.times(rate).least(N::ONE).most(-N::ONE)
     }
 
     /// m, for the rate `start` at the start of the period, `free_end` at its end without friction, and b.

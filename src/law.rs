@@ -5,7 +5,7 @@ use crate::build::plant::Plant;
 use crate::config::{Config, Interpolation};
 use crate::error::BuildError;
 use crate::number::Number;
-use crate::row::Row;
+use crate::row::{Row, ScaledRow};
 use crate::signals::{Input, Output};
 use crate::state::State;
 use crate::units::Units;
@@ -29,15 +29,17 @@ pub struct Law<N: Number> {
     pub(crate) small_angle: N,
     /// phi' to the full scale of rates.
     pub(crate) rate_shift: u32,
+    /// Disturbance torques to the full scale of motor torques.
+    pub(crate) motor_shift: u32,
     pub(crate) ins: ins::Law<N>,
     pub(crate) stop: stop::Law<N>,
     pub(crate) tables: bearing::level::Tables<N>,
     /// Torque that makes phi' jump by 1 over a period: `Jg / T`.
-    pub(crate) drift_torque: Row<N, 1>,
+    pub(crate) drift_torque: ScaledRow<N, 1>,
     /// phi lost over a period to a drift of 1.
-    pub(crate) drift_angle: Row<N, 1>,
+    pub(crate) drift_angle: ScaledRow<N, 1>,
     /// theta's full scale times the rates', over that of phi'.
-    pub(crate) drift_scale: Row<N, 1>,
+    pub(crate) drift_scale: ScaledRow<N, 1>,
     pub(crate) largest_drift_torque: N,
     pub(crate) units: Units,
     pub(crate) identity: u32,
@@ -68,9 +70,10 @@ impl Config {
             stop: stop::Law::build(&plant, &units, self.gyro.stop_angle_rad, period),
             ins: ins::Law::build(&units, range.radial_accel_mps2.max(range.axial_accel_mps2), period),
             rate_shift: (units.rate - units.gimbal_rate).unsigned_abs(),
-            drift_torque: Row::build([plant.gimbal_inertia / period], [units.gimbal_rate], units.torque),
-            drift_angle: Row::build([-0.5 * period], [units.gimbal_rate], units.gimbal_angle),
-            drift_scale: Row::build([1.0], [units.gyro_angle + units.rate], units.gimbal_rate),
+            motor_shift: (units.motor_torque - units.torque).unsigned_abs(),
+            drift_torque: ScaledRow::build([plant.gimbal_inertia / period], [units.gimbal_rate], units.torque),
+            drift_angle: ScaledRow::build([-0.5 * period], [units.gimbal_rate], units.gimbal_angle),
+            drift_scale: ScaledRow::build([1.0], [units.gyro_angle + units.rate], units.gimbal_rate),
             largest_drift_torque: N::quantise(range.torque_nm, units.torque),
             small_angle: N::quantise(0.1, units.gimbal_angle),
             identity: self.identity(N::TAG),

@@ -44,10 +44,15 @@ pub trait Number:
 
     /// Smallest mantissa of [`Number::hypot`].
     const SQRT_LOWEST: f64;
+    /// Whether signals are fractions of full scales.
+    const HAS_SCALES: bool;
     /// Tag of the number system in saved states and in digests.
     const TAG: u8;
 
-    /// The signal nearest below a sum of products, for [`Fixed`]; the sum itself for `f32`.
+    /// The signal nearest below a sum of products, for [`Fixed`]; the sum itself for `f32`. The full scale is known to
+    /// hold the sum.
+    fn head(wide: Self::Wide) -> Self;
+    /// [`Number::head`] for any sum: saturates.
     fn narrow(wide: Self::Wide) -> Self;
     /// A sum times `2^shift`, saturated.
     fn narrow_shifted(wide: Self::Wide, shift: u32) -> Self;
@@ -70,12 +75,6 @@ pub trait Number:
     /// `self * 2^shift`, saturated: the same value in a full scale `2^shift` times smaller.
     #[must_use]
     fn shift_up(self, shift: u32) -> Self;
-    /// The same value in a full scale `2^-exponent` times as large, saturated.
-    #[must_use]
-    fn rescale(self, exponent: i32) -> Self {
-        let shift = exponent.unsigned_abs();
-        if exponent < 0 { self.shift_down(shift) } else { self.shift_up(shift) }
-    }
     /// `self / divisor` in the full scale 2^0, for `|self| <= divisor`; saturates at 1 beyond.
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;

@@ -2,42 +2,80 @@
 
 use crate::number::Number;
 
-/// `sum of coefficient * signal`, each signal with its own full scale, the sum with another.
+/// `sum of coefficient * signal`, each signal with its own full scale, the sum with one that holds it and every term.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(transparent)]
 pub(crate) struct Row<N: Number, const L: usize> {
-    coefs: [N::Coef; L],
-    /// The coefficients are `2^shift` too small, so that fractions can hold them.
-    shift: u32,
+    pub(crate) coefs: [N::Coef; L],
 }
 
 impl<N: Number, const L: usize> Row<N, L> {
-    /// Quantises factors in SI for signals of the full scales `2^from` and a sum of the full scale `2^to`.
+    /// Quantises factors in SI for signals of the full scales `2^from` and a sum of the full scale `2^to`, which must hold
+    /// each factor times its signal's full scale ([`Row::exponent`]).
     pub(crate) fn build(factors: [f64; L], from: [i32; L], to: i32) -> Self {
-        let scaled: [f64; L] = core::array::from_fn(|i| N::rescaled(factors[i], from[i] - to));
-        let largest = scaled.iter().fold(0.0, |most: f64, factor| most.max(factor.abs()));
-        let shift = N::exponent(largest).clamp(0, 31);
-        Self { coefs: scaled.map(|factor| N::coef(N::rescaled(factor, -shift))), shift: shift.unsigned_abs() }
+        Self { coefs: core::array::from_fn(|i| N::coef(N::rescaled(factors[i], from[i] - to))) }
+    }
+
+    /// Exponent of the smallest full scale that a row of these factors may have.
+    pub(crate) fn exponent(factors: [f64; L], from: [i32; L]) -> i32 {
+        let terms = factors.iter().zip(from).map(|(factor, from)| N::exponent(N::rescaled(factor.abs(), from)));
+        terms.fold(i32::MIN, i32::max)
     }
 
     /// The sum, rounded once.
     #[inline(always)]
     pub(crate) fn at(&self, signals: &[N; L]) -> N {
-        N::narrow_shifted(self.products(signals), self.shift)
+        N::head(self.increment(signals))
     }
 
     /// The sum with all its bits, to be added to a state.
     #[inline(always)]
     pub(crate) fn increment(&self, signals: &[N; L]) -> N::Wide {
-        N::widen_shifted(self.products(signals), self.shift)
+        let mut products = self.coefs.iter().zip(signals).map(|(coef, signal)| *coef * *signal);
+        let first = products.next().unwrap_or_default();
+        products.fold(first, |sum, product| sum + product)
+    }
+}
+
+/// A row whose terms may be larger than its sum's full scale; it saturates. Off the straight path: a loop that is not
+/// unrolled, for the sake of the program's size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ScaledRow<N: Number, const L: usize> {
+    coefs: [N::Coef; L],
+    /// The coefficients are `2^shift` too small, so that fractions can hold them.
+    shift: u32,
+}
+
+impl<N: Number, const L: usize> ScaledRow<N, L> {
+    /// As [`Row::build`], for any full scale of the sum.
+    pub(crate) fn build(factors: [f64; L], from: [i32; L], to: i32) -> Self {
+        let shift = (Row::<N, L>::exponent(factors, from) - to).clamp(0, 31);
+        Self { coefs: Row::<N, L>::build(factors, from, to + shift).coefs, shift: shift.unsigned_abs() }
     }
 
-    #[inline(always)]
-    fn products(&self, signals: &[N; L]) -> N::Wide {
-        let [first, rest @ ..] = &self.coefs[..] else { return N::Wide::default() };
-        let mut sum = *first * signals[0];
-        for (coef, signal) in rest.iter().zip(&signals[1..]) {
-            sum = sum + *coef * *signal;
-        }
-        sum
+    /// The sum, rounded once.
+    pub(crate) fn at(&self, signals: &[N; L]) -> N {
+        N::narrow_shifted(sum_of_products(&self.coefs, signals), self.shift)
     }
+
+    /// The sum with all its bits, to be added to a state.
+    pub(crate) fn increment(&self, signals: &[N; L]) -> N::Wide {
+        N::widen_shifted(sum_of_products(&self.coefs, signals), self.shift)
+    }
+}
+
+impl<N: Number> ScaledRow<N, 1> {
+    /// The sum of one product, on the straight path.
+    #[inline(always)]
+    pub(crate) fn times(&self, signal: N) -> N {
+        let [coef] = self.coefs;
+        N::narrow_shifted(coef * signal, self.shift)
+    }
+}
+
+#[inline(never)]
+fn sum_of_products<N: Number>(coefs: &[N::Coef], signals: &[N]) -> N::Wide {
+    let mut products = coefs.iter().zip(signals).map(|(coef, signal)| *coef * *signal);
+    let first = products.next().unwrap_or_default();
+    products.fold(first, |sum, product| sum + product)
 }

@@ -5,7 +5,8 @@
 //! | 4 | `GSS1` |
 //! | 1 | number system |
 //! | 4 | identity of the law |
-//! | 3 | flags: started, offset left; stop |
+//! | 1 | regime: new, free, on the positive stop, on the negative one |
+//! | 2 | lasting fault bits |
 //! | 4 each | signals, in the order of [`State`]'s fields |
 //! | 8 each | accumulating states |
 //! | 56 | INS carries and sums |
@@ -14,10 +15,11 @@
 use core::fmt;
 
 use crate::digest::Digest;
+use crate::faults::Faults;
 use crate::law::Law;
 use crate::number::Number;
-use crate::signals::Stop;
-use crate::state::State;
+use crate::state::{Regime, State};
+use crate::stop::Side;
 
 const MAGIC: [u8; 4] = *b"GSS1";
 
@@ -62,19 +64,21 @@ impl<N: Number> Law<N> {
     #[must_use]
     pub fn save(&self, state: &State<N>) -> Saved {
         let mut bytes = [0; SAVED_LEN];
-        let mut codec = Writer { rest: &mut bytes };
-        codec.put(&MAGIC);
-        codec.put(&[N::TAG]);
-        codec.put(&self.identity.to_le_bytes());
-        let stop = match state.stop {
-            Stop::Free => 0,
-            Stop::Positive => 1,
-            Stop::Negative => 2,
+        let mut writer = Writer { rest: &mut bytes };
+        writer.put(&MAGIC);
+        writer.put(&[N::TAG]);
+        writer.put(&self.identity.to_le_bytes());
+        let regime = match state.regime {
+            Regime::New => 0,
+            Regime::Free => 1,
+            Regime::Held(Side::Positive) => 2,
+            Regime::Held(Side::Negative) => 3,
         };
-        codec.put(&[u8::from(state.started), u8::from(state.offset_left), stop]);
+        writer.put(&[regime]);
+        writer.put(&state.lasting.bits().to_le_bytes());
         // Walking a copy keeps the order of fields in one place.
         let mut copy = *state;
-        walk(&mut copy, &mut codec);
+        walk(&mut copy, &mut writer);
         let check = checksum(&bytes);
         bytes[SAVED_LEN - 4..].copy_from_slice(&check);
         bytes
@@ -98,18 +102,21 @@ impl<N: Number> Law<N> {
         if reader.take::<4>() != self.identity.to_le_bytes() {
             return Err(RestoreError::OtherLaw);
         }
-        let [started, offset_left, stop] = reader.take::<3>();
         let mut state = self.start();
-        state.started = started == 1;
-        state.offset_left = offset_left == 1;
-        state.stop = match stop {
-            0 => Stop::Free,
-            1 => Stop::Positive,
-            2 => Stop::Negative,
+        state.regime = match reader.take::<1>() {
+            [0] => Regime::New,
+            [1] => Regime::Free,
+            [2] => Regime::Held(Side::Positive),
+            [3] => Regime::Held(Side::Negative),
+            _ => return Err(RestoreError::Impossible),
+        };
+        state.lasting = match u16::from_le_bytes(reader.take()) {
+            0 => Faults::NONE,
+            bits if bits == Faults::OFFSET_LEFT.bits() => Faults::OFFSET_LEFT,
             _ => return Err(RestoreError::Impossible),
         };
         walk(&mut state, &mut reader);
-        if reader.impossible || started > 1 || offset_left > 1 { Err(RestoreError::Impossible) } else { Ok(state) }
+        if reader.impossible { Err(RestoreError::Impossible) } else { Ok(state) }
     }
 }
 

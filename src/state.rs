@@ -1,8 +1,10 @@
 //! The memory of one axis between two steps.
 
+use crate::faults::Faults;
 use crate::ins;
 use crate::number::Number;
 use crate::signals::{Input, Stop};
+use crate::stop::Side;
 use crate::{free, stop};
 
 /// Everything that a step remembers: plain data, copied freely, saved and restored as bytes.
@@ -27,20 +29,36 @@ pub struct State<N: Number> {
     pub(crate) free: free::State<N>,
     pub(crate) held: stop::State<N>,
     pub(crate) ins: ins::State<N>,
-    /// Whether a first row has come.
-    pub(crate) started: bool,
-    /// Whether the gyro has ever left a stop.
-    pub(crate) offset_left: bool,
-    pub(crate) stop: Stop,
+    /// Bits that stay set.
+    pub(crate) lasting: Faults,
+    pub(crate) regime: Regime,
+}
+
+/// Which law moves the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Regime {
+    /// The gyro is off its stops.
+    Free,
+    /// The gyro sits on this stop.
+    Held(Side),
+    /// No row has come yet.
+    New,
+}
+
+impl Regime {
+    pub(crate) fn stop(self) -> Stop {
+        match self {
+            Self::Free | Self::New => Stop::Free,
+            Self::Held(Side::Positive) => Stop::Positive,
+            Self::Held(Side::Negative) => Stop::Negative,
+        }
+    }
 }
 
 impl<N: Number> State<N> {
     /// At rest, no row yet.
     pub(crate) fn new() -> Self {
         Self {
-            started: false,
-            offset_left: false,
-            stop: Stop::Free,
             row: Input::default(),
             friction_level: N::ZERO,
             other_torque: N::ZERO,
@@ -54,6 +72,8 @@ impl<N: Number> State<N> {
             free: free::State::<N>::default(),
             held: stop::State::default(),
             ins: ins::State::default(),
+            lasting: Faults::NONE,
+            regime: Regime::New,
         }
     }
 }

@@ -16,7 +16,7 @@
 use crate::build::plant::{LAGS, Plant};
 use crate::crossing::Arc;
 use crate::number::Number;
-use crate::row::Row;
+use crate::row::ScaledRow;
 use crate::units::Units;
 
 /// What shapes the motor torque on a stop: y, then `z_i`.
@@ -39,13 +39,13 @@ pub(crate) struct State<N: Number> {
 pub(crate) struct Law<N: Number> {
     /// The stop angle.
     pub(crate) angle: N,
-    integrator_change: Row<N, 1>,
+    integrator_change: ScaledRow<N, 1>,
     lag_decay: [N::Coef; LAGS],
-    gimbal_rate_change: Row<N, { LAGS + 3 }>,
-    gimbal_angle_change: Row<N, { LAGS + 4 }>,
-    motor_torque: Row<N, { LAGS + 2 }>,
+    gimbal_rate_change: ScaledRow<N, { LAGS + 3 }>,
+    gimbal_angle_change: ScaledRow<N, { LAGS + 4 }>,
+    motor_torque: ScaledRow<N, { LAGS + 2 }>,
     /// Change of phi' over a period for a torque of 1: `T / Jg`.
-    pub(crate) gimbal_rate_gain: Row<N, 1>,
+    pub(crate) gimbal_rate_gain: ScaledRow<N, 1>,
     contact: Contact<N>,
     release: Release<N>,
 }
@@ -55,22 +55,22 @@ pub(crate) struct Law<N: Number> {
 struct Contact<N: Number> {
     lags: [LagTail<N>; LAGS],
     /// y for the excess's sum.
-    integrator: Row<N, 1>,
+    integrator: ScaledRow<N, 1>,
     /// phi' for the excess, the excess's sum, and the changes of `z_i`.
-    gimbal_rate: Row<N, { LAGS + 2 }>,
+    gimbal_rate: ScaledRow<N, { LAGS + 2 }>,
     /// Of which phi' that the motor torque made.
-    motor_share: Row<N, { LAGS + 2 }>,
+    motor_share: ScaledRow<N, { LAGS + 2 }>,
     /// phi for the excess's sum and for phi' that the motor torque made.
-    gimbal_angle: Row<N, 2>,
+    gimbal_angle: ScaledRow<N, 2>,
 }
 
 /// Response of one lag to a rate that changes linearly over the last `h` of a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct LagTail<N: Number> {
     /// `p T`.
-    exponent: Row<N, 1>,
+    exponent: ScaledRow<N, 1>,
     curve: Curve<N>,
-    gain: Row<N, 1>,
+    gain: ScaledRow<N, 1>,
 }
 
 /// `(e^(x h) - 1 - x h) / (x h)^2` for `0 <= h <= 1`, a polynomial in h.
@@ -86,12 +86,12 @@ const CURVE_SCALE: i32 = 3;
 struct Release<N: Number> {
     curve: Curve<N>,
     /// theta' for phi' at the end, weighted.
-    gyro_rate: Row<N, 1>,
+    gyro_rate: ScaledRow<N, 1>,
     /// theta for theta', a third of the time.
-    gyro_angle: Row<N, 1>,
-    lags: [Row<N, 1>; LAGS],
+    gyro_angle: ScaledRow<N, 1>,
+    lags: [ScaledRow<N, 1>; LAGS],
     /// phi less the offset, for theta and theta'.
-    gimbal_angle: Row<N, 2>,
+    gimbal_angle: ScaledRow<N, 2>,
 }
 
 /// The physical state when the gyro has left its stop.
@@ -123,20 +123,20 @@ impl<N: Number> Law<N> {
         let torque_scales = [motor_scale, l1, l2, l3, l4, l5, units.gyro_angle];
         Self {
             angle: N::quantise(stop_angle_rad, units.gyro_angle),
-            integrator_change: Row::build([k * period], [units.gyro_angle], motor_scale),
+            integrator_change: ScaledRow::build([k * period], [units.gyro_angle], motor_scale),
             lag_decay: plant.lags.map(|p| N::decay_coef(libm::expm1(p * period))),
-            gimbal_rate_change: Row::build(
+            gimbal_rate_change: ScaledRow::build(
                 [-period / jg, z1, z2, z3, z4, z5, theta_rate, period / jg],
                 signals,
                 units.gimbal_rate,
             ),
-            gimbal_angle_change: Row::build(
+            gimbal_angle_change: ScaledRow::build(
                 [-half / jg, a1, a2, a3, a4, a5, theta_angle, half / jg, period],
                 with_rate,
                 units.gimbal_angle,
             ),
-            motor_torque: Row::build([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, d], torque_scales, motor_scale),
-            gimbal_rate_gain: Row::build([period / jg], [units.torque], units.gimbal_rate),
+            motor_torque: ScaledRow::build([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, d], torque_scales, motor_scale),
+            gimbal_rate_gain: ScaledRow::build([period / jg], [units.torque], units.gimbal_rate),
             contact: Contact::build(plant, units, period),
             release: Release::build(plant, units, period),
         }
@@ -253,15 +253,15 @@ impl<N: Number> Contact<N> {
         rate[0] += plant.momentum / jg;
         Self {
             lags: core::array::from_fn(|i| LagTail {
-                exponent: Row::build([plant.lags[i] * period], [units.gyro_angle], units.gyro_angle),
+                exponent: ScaledRow::build([plant.lags[i] * period], [units.gyro_angle], units.gyro_angle),
                 curve: Curve::build(plant.lags[i] * period),
-                gain: Row::build([plant.lag_gains[i]], [units.gyro_angle], units.lags[i]),
+                gain: ScaledRow::build([plant.lag_gains[i]], [units.gyro_angle], units.lags[i]),
             }),
-            integrator: Row::build([plant.integrator_gain * period], [units.gyro_angle], units.motor_torque),
-            gimbal_rate: Row::build(rate, scales, units.gimbal_rate),
-            motor_share: Row::build(motor, scales, units.gimbal_rate),
+            integrator: ScaledRow::build([plant.integrator_gain * period], [units.gyro_angle], units.motor_torque),
+            gimbal_rate: ScaledRow::build(rate, scales, units.gimbal_rate),
+            motor_share: ScaledRow::build(motor, scales, units.gimbal_rate),
             // A torque that grows with the square of the time adds a quarter of its phi' times the time.
-            gimbal_angle: Row::build(
+            gimbal_angle: ScaledRow::build(
                 [plant.momentum * period / jg, 0.25 * period],
                 [units.gyro_angle, units.gimbal_rate],
                 units.gimbal_angle,
@@ -285,10 +285,10 @@ impl<N: Number> Release<N> {
         let (jo, bo, h) = (plant.float_inertia, plant.damping, plant.momentum);
         Self {
             curve: Curve::build(-bo / jo * period),
-            gyro_rate: Row::build([h / jo * period], [units.gimbal_rate], units.gyro_rate()),
-            gyro_angle: Row::build([period / 3.0], [units.gyro_rate()], units.gyro_angle),
-            lags: core::array::from_fn(|i| Row::build([plant.lag_gains[i]], [units.gyro_angle], units.lags[i])),
-            gimbal_angle: Row::build([bo / h, jo / h], [units.gyro_angle, units.gyro_rate()], units.gimbal_angle),
+            gyro_rate: ScaledRow::build([h / jo * period], [units.gimbal_rate], units.gyro_rate()),
+            gyro_angle: ScaledRow::build([period / 3.0], [units.gyro_rate()], units.gyro_angle),
+            lags: core::array::from_fn(|i| ScaledRow::build([plant.lag_gains[i]], [units.gyro_angle], units.lags[i])),
+            gimbal_angle: ScaledRow::build([bo / h, jo / h], [units.gyro_angle, units.gyro_rate()], units.gimbal_angle),
         }
     }
 }

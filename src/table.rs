@@ -47,7 +47,7 @@ impl<N: Number> PowerTable<N> {
     pub(crate) fn at(&self, argument: N) -> N {
         let segment = (argument.sixteenth() - self.first).max(0).unsigned_abs() as usize;
         let chord = &self.chords[segment & (CHORDS - 1)];
-        chord.offset + N::narrow(chord.slope * argument)
+        chord.offset + N::head(chord.slope * argument)
     }
 }
 
@@ -75,6 +75,6 @@ impl<N: Number> SqrtTable<N> {
     #[inline(always)]
     pub(crate) fn chord(&self, segment: u32, mantissa: N) -> N {
         let chord = &self.chords[(segment & 63) as usize];
-        chord.offset + N::narrow(chord.slope * mantissa)
+        chord.offset + N::head(chord.slope * mantissa)
     }
 }

@@ -5,6 +5,7 @@ use crate::build::modes::{ANGLE, GIMBAL_RATE, INTEGRATOR, LAG, Modes, PHYSICAL, 
 use crate::build::plant::{LAGS, Plant};
 use crate::build::poles::ORDER;
 use crate::number::Number;
+use crate::row::Row;
 
 /// Exponents of the full scales; all 0 for `f32`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,22 +47,28 @@ impl Units {
         for pair in mode_scales.chunks_exact_mut(2) {
             pair.fill(pair[0].max(pair[1]));
         }
-        let reach = |row: [f64; ORDER]| row.iter().zip(&bounds).map(|(factor, bound)| (factor * bound).abs()).sum();
-        let gimbal_rate: f64 = reach(modes.row(|s| plant.gimbal_rate_of(s)));
-        let motor_torque: f64 = reach(modes.row(|s| plant.motor_torque_of(s)));
+        // Each mode's part of an output is a fraction of the output's full scale.
+        let output =
+            |row: [f64; ORDER], least: f64| Row::<N, ORDER>::exponent(row, mode_scales).max(N::exponent(least));
+        let reach =
+            |row: &[f64; ORDER]| -> f64 { row.iter().zip(&bounds).map(|(factor, bound)| (factor * bound).abs()).sum() };
+        let angle_row = modes.row(|s| plant.gimbal_angle_of(s));
+        let rate_row = modes.row(|s| plant.gimbal_rate_of(s));
+        let torque_row = modes.row(|s| plant.motor_torque_of(s));
+        let rate_change = config.period_s / plant.gimbal_inertia * libm::ldexp(1.0, torque);
+        let gimbal_rate = output(rate_row, reach(&rate_row).max(rate_change).max(1.0));
         // theta' of a few rad/s: beyond, the gyro crosses from stop to stop within a few periods.
         let fastest_gyro = 4.0;
-        let gimbal_rate = N::exponent(gimbal_rate.max(1.0));
         Self {
             accel,
             // the difference of two rates must fit
             rate: N::exponent(2.0 * range.rate_radps).max(gimbal_rate),
             // the change of a torque must fit
             torque,
-            gimbal_angle: N::exponent(0.9),
+            gimbal_angle: output(angle_row, 0.9),
             gimbal_rate,
-            gyro_angle: N::exponent(8.0 * config.gyro.stop_angle_rad),
-            motor_torque: N::exponent(motor_torque + 2.0 * largest_torque),
+            gyro_angle: output([1.0; ORDER], 8.0 * config.gyro.stop_angle_rad),
+            motor_torque: output(torque_row, reach(&torque_row) + 2.0 * largest_torque).max(torque),
             modes: mode_scales,
             lags: core::array::from_fn(|i| {
                 N::exponent((fastest_gyro * plant.lag_gains[i] / plant.lags[i]).abs().max(0.1 * largest_torque))

@@ -54,8 +54,9 @@ impl<N: Number> Law<N> {
         let largest_static = fa * most_axial + fr * most_radial;
         let largest_load = (ta * most_axial).max(most_radial);
 
-        let static_scale = N::exponent(largest_static);
-        let load_scale = N::exponent(largest_load);
+        // Twice: the full scale of the acceleration may be twice its largest.
+        let static_scale = N::exponent(2.0 * largest_static);
+        let load_scale = N::exponent(2.0 * largest_load);
         let power = |load: f64| count * bearing.load_torque_nm_per_n * libm::pow(load, bearing.load_exponent);
         let smallest_static = fa * preload;
         let steepest = bearing.load_exponent * power(smallest_static) / smallest_static;

@@ -109,7 +109,13 @@ impl Number for Fixed {
     const ZERO: Self = Self(0);
     const ONE: Self = Self(LARGEST);
     const SQRT_LOWEST: f64 = 0.25;
+    const HAS_SCALES: bool = true;
     const TAG: u8 = b'q';
+
+    #[inline(always)]
+    fn head(wide: Wide) -> Self {
+        Self((wide.0 >> 31) as i32)
+    }
 
     #[inline(always)]
     fn narrow(wide: Wide) -> Self {
@@ -148,12 +154,13 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn times(self, other: Self) -> Self {
-        Self::saturate((i64::from(self.0) * i64::from(other.0)) >> 31)
+        // -1 does not exist: the product is a fraction.
+        Self(((i64::from(self.0) * i64::from(other.0)) >> 31) as i32)
     }
 
     #[inline(always)]
     fn shift_down(self, shift: u32) -> Self {
-        Self(self.0 >> shift.min(31))
+        Self(self.0.wrapping_shr(shift))
     }
 
     #[inline(always)]

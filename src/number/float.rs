@@ -21,7 +21,13 @@ impl Number for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const SQRT_LOWEST: f64 = 1.0;
+    const HAS_SCALES: bool = false;
     const TAG: u8 = b'f';
+
+    #[inline(always)]
+    fn head(wide: f32) -> f32 {
+        wide
+    }
 
     #[inline(always)]
     fn narrow(wide: f32) -> f32 {
