@@ -47,6 +47,7 @@ impl Stages {
             Stage { name: "target-addresses", run: target::addresses::check },
             Stage { name: "target-digests", run: target::digests::check },
             Stage { name: "target-gates", run: target::gates::check },
+            Stage { name: "target-stack", run: target::stack::check },
             Stage { name: "target-budget", run: target::budget::check },
             Stage { name: "tests", run: host::tests::run },
         ])

@@ -3,10 +3,12 @@
 mod code;
 mod reach;
 mod riscv;
+mod stack_sizes;
 mod thumb;
 
 pub(crate) use code::functions;
 pub(crate) use reach::Reach;
+pub(crate) use stack_sizes::stack_sizes;
 
 use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};

@@ -22,8 +22,26 @@ struct Message {
 }
 
 /// Units of one word; rustdoc takes nothing with a space or a slash for a link.
-const UNITS: [&str; 15] =
-    ["s", "ms", "us", "rad", "mrad", "deg", "m", "kg", "K", "N", "Hz", "g", "percent", "bytes", "instructions"];
+const UNITS: [&str; 18] = [
+    "s",
+    "ms",
+    "us",
+    "rad",
+    "mrad",
+    "deg",
+    "m",
+    "kg",
+    "K",
+    "N",
+    "Hz",
+    "g",
+    "rpm",
+    "cSt",
+    "lbf",
+    "percent",
+    "bytes",
+    "instructions",
+];
 
 pub(crate) fn check() -> Result<Note> {
     let output =
