@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum};
 use gimbal_log::import::{self, ColumnMap, GimbalAxis, Resampled};
-use gimbal_log::{AtomicFile, Column, Log, LogError, Needs, Problem};
+use gimbal_log::{AtomicFile, Column, Log, LogError, Needs};
 
 use crate::exit::Failure;
 use crate::progress::Watched;
@@ -75,12 +75,7 @@ enum Frame {
 
 /// Converts.
 pub(crate) fn convert(args: &Args) -> Result<(), Failure> {
-    let unreadable = |error: std::io::Error| LogError {
-        file: args.file.clone(),
-        line: None,
-        column: None,
-        problem: Box::new(Problem::Io(error)),
-    };
+    let unreadable = |error| LogError::unreadable(&args.file, error);
     let names = import::header_names(Watched::open(&args.file).map_err(unreadable)?, &args.file)?;
     let altos = args.format == Format::Altos || (args.format == Format::Auto && import::is_altos(&names));
     let map = column_map(args, altos, &names)?;

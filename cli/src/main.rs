@@ -8,8 +8,10 @@
 mod convert;
 mod exit;
 mod interrupt;
+mod plot;
 mod progress;
 mod report;
+mod run;
 
 use std::process::ExitCode;
 
@@ -21,12 +23,16 @@ use clap::{Parser, Subcommand};
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    #[command(flatten)]
+    run: run::Options,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Turns a foreign CSV file into a log: names, units, axes, one constant rate.
     Convert(convert::Args),
+    /// Runs a log through the model; without one, the paper's two 20 g cases.
+    Run(run::Args),
 }
 
 fn main() -> ExitCode {
@@ -34,7 +40,8 @@ fn main() -> ExitCode {
     interrupt::watch();
     let result = match &cli.command {
         Some(Command::Convert(args)) => convert::convert(args),
-        None => Ok(()),
+        Some(Command::Run(args)) => run::run(args),
+        None => run::run_default(&cli.run),
     };
     exit::code(result)
 }

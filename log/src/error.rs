@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::Column;
+
 /// Why a log cannot be read.
 #[derive(Debug, Error)]
 pub struct LogError {
@@ -47,6 +49,24 @@ impl LogError {
     pub(crate) fn cell(file: &Path, line: u64, index: usize, name: &str, problem: Problem) -> Self {
         let column = Some((index + 1, clip(name.as_bytes())));
         Self { file: file.to_owned(), line: Some(line), column, problem: Box::new(problem) }
+    }
+
+    /// A file that cannot be opened.
+    #[must_use]
+    pub fn unreadable(file: &Path, error: std::io::Error) -> Self {
+        Self::file(file, Problem::Io(error))
+    }
+
+    /// A driving column whose first sample is missing.
+    #[must_use]
+    pub fn starts_missing(file: &Path, line: u64, column: Column) -> Self {
+        Self::line(file, line, Problem::StartsMissing { name: column.name() })
+    }
+
+    /// A gap that is too long to be crossed.
+    #[must_use]
+    pub fn gap(file: &Path, line: u64, from_s: f64, to_s: f64) -> Self {
+        Self::line(file, line, Problem::Gap { from_s, to_s })
     }
 
     /// Whether the file system failed, rather than the contents being wrong.
@@ -153,6 +173,22 @@ pub enum Problem {
         /// Time of the row before.
         from_s: f64,
         /// Time of this row.
+        to_s: f64,
+    },
+    /// No sample to begin with.
+    #[error("`{name}` has no sample in the first row; begin the log where it has one")]
+    StartsMissing {
+        /// The column.
+        name: &'static str,
+    },
+    /// A long gap.
+    #[error(
+        "no row between {from_s} s and {to_s} s; cut the log there, or cross the gap knowingly with `gimbal convert`"
+    )]
+    Gap {
+        /// Last row before it [s].
+        from_s: f64,
+        /// First row behind it [s].
         to_s: f64,
     },
     /// A column map that names a column that is not there.

@@ -59,6 +59,13 @@ pub struct ModelFile {
     places: Places,
 }
 
+impl Default for ModelFile {
+    /// The default preset without a file.
+    fn default() -> Self {
+        Self::preset(Preset::default())
+    }
+}
+
 impl ModelFile {
     /// A preset without a file.
     #[must_use]

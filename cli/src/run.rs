@@ -1,0 +1,188 @@
+//! `gimbal run`: a log, the paper's cases or a torque step through the model.
+
+mod drive;
+mod flight;
+mod model;
+mod output;
+mod picture;
+mod profile;
+mod reference;
+mod source;
+mod summary;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Parser, ValueEnum};
+use gimbal_model_file::ModelFile;
+use gimbal_servo::{BuildError, Config, Fixed};
+use serde_json::{Value, json};
+
+use crate::exit::Failure;
+use crate::report;
+use drive::{Files, Finished};
+use flight::Flight;
+use model::{Kind, Model};
+use profile::Profile;
+use reference::Reference;
+use source::{Mended, Source};
+use summary::Summary;
+
+/// A log through the model; without one, the paper's two 20 g cases.
+#[derive(Debug, Parser)]
+pub(crate) struct Args {
+    /// Log; without one, the paper's two 20 g cases run
+    log: Option<PathBuf>,
+    #[command(flatten)]
+    options: Options,
+}
+
+/// How to run.
+#[derive(Debug, Clone, Parser)]
+pub(crate) struct Options {
+    /// Model file
+    #[arg(long, value_name = "FILE.toml")]
+    model: Option<PathBuf>,
+    /// Number system of the flight law
+    #[arg(long, value_enum, default_value_t = Number::F32)]
+    number: Number,
+    /// Run the reference plant instead of the flight law
+    #[arg(long, conflicts_with = "number")]
+    plant: bool,
+    /// 10 s of a torque on the gimbal, ended after `T_OFF_S`, instead of a log; no friction, no unbalance
+    #[arg(long, value_name = "T[,T_OFF_S]", value_parser = Profile::torque, allow_hyphen_values = true)]
+    disturbance_nm: Option<Profile>,
+    /// Write the run; the paper's cases go to FILE-unbalance.csv and FILE-friction.csv
+    #[arg(long, value_name = "FILE.csv")]
+    out: Option<PathBuf>,
+    /// Draw the run; the paper's cases go to FILE-unbalance.svg and FILE-friction.svg
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    /// Print the summary as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Number {
+    F32,
+    Fixed,
+}
+
+impl Options {
+    fn kind(&self) -> Kind {
+        match (self.plant, self.number) {
+            (true, _) => Kind::Plant,
+            (false, Number::F32) => Kind::Float,
+            (false, Number::Fixed) => Kind::Fixed,
+        }
+    }
+}
+
+/// Runs what the command line says.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let options = &args.options;
+    let model = model_file(options.model.as_deref())?;
+    match (&args.log, options.disturbance_nm) {
+        (Some(_), Some(_)) => Err(Failure::input("a log and --disturbance-nm exclude each other; give one of them")),
+        (Some(log), None) => {
+            let summary = run_log(log, &model, options)?;
+            report::print(&summary.text(), options.json.then(|| summary.json()).as_ref())
+        }
+        (None, Some(step)) => {
+            let summary = run_profile(step, &model, options, None)?;
+            report::print(&summary.text(), options.json.then(|| summary.json()).as_ref())
+        }
+        (None, None) => run_paper(&model, options),
+    }
+}
+
+/// Runs the paper's cases.
+pub(crate) fn run_default(options: &Options) -> Result<(), Failure> {
+    run(&Args { log: None, options: options.clone() })
+}
+
+fn run_paper(model: &ModelFile, options: &Options) -> Result<(), Failure> {
+    let mut unbalance = run_profile(Profile::Unbalance, model, options, Some(Profile::Unbalance.name()))?;
+    unbalance.published = unbalance.figure_7();
+    let friction = run_profile(Profile::Friction, model, options, Some(Profile::Friction.name()))?;
+    let text = format!("{}\n\n{}", unbalance.text(), friction.text());
+    let json = options.json.then(|| {
+        // The keys of a single run are those of the first case.
+        let mut object: Value = unbalance.json();
+        object["cases"] =
+            json!({ Profile::Unbalance.name(): unbalance.json(), Profile::Friction.name(): friction.json() });
+        object
+    });
+    report::print(&text, json.as_ref())
+}
+
+fn model_file(path: Option<&Path>) -> Result<ModelFile, Failure> {
+    match path {
+        None => Ok(ModelFile::default()),
+        Some(path) => ModelFile::open(path).map_err(|error| Failure::Input(error.into())),
+    }
+}
+
+fn run_profile(
+    profile: Profile,
+    model: &ModelFile,
+    options: &Options,
+    suffix: Option<&str>,
+) -> Result<Summary, Failure> {
+    let config = model::held(profile.config(&model.config));
+    let mut files = Files::create(options, suffix, None)?;
+    let finished =
+        with_model(options.kind(), &config, model, |runs| drive::profile(runs, profile, config.period_s, &mut files))?;
+    let title = profile.description();
+    let notes = files.commit(&title)?;
+    Ok(summary(title, options.kind(), finished, notes))
+}
+
+fn run_log(path: &Path, model: &ModelFile, options: &Options) -> Result<Summary, Failure> {
+    let source = Source::open(path, options.out.is_some())?;
+    let config = Config { period_s: source.period_s, ..model.config };
+    let mut notes = source.remarks.clone();
+    let mut files = Files::create(options, None, Some(&source))?;
+    let finished = with_model(options.kind(), &config, model, |runs| drive::log(runs, &source, &mut files))?;
+    notes.extend(told(&source.finish()));
+    let title = path.display().to_string();
+    notes.extend(files.commit(&title)?);
+    Ok(summary(title, options.kind(), finished, notes))
+}
+
+/// Builds what is to run, and hands it over.
+fn with_model(
+    kind: Kind,
+    config: &Config,
+    file: &ModelFile,
+    run: impl FnOnce(&mut dyn Model) -> Result<Finished, Failure>,
+) -> Result<Finished, Failure> {
+    let refused = |error: BuildError| Failure::Input(file.locate(&error).into());
+    match kind {
+        Kind::Float => run(&mut Flight::<f32>::new(config).map_err(refused)?),
+        Kind::Fixed => run(&mut Flight::<Fixed>::new(config).map_err(refused)?),
+        Kind::Plant => run(&mut Reference::new(config).map_err(refused)?),
+    }
+}
+
+fn summary(title: String, kind: Kind, finished: Finished, notes: Vec<String>) -> Summary {
+    Summary { title, kind, totals: finished.totals, last: finished.last, notes, published: Vec::new() }
+}
+
+/// What is worth a note about a log.
+fn told(mended: &Mended) -> Vec<String> {
+    let mut notes = Vec::new();
+    if !mended.time.is_regular() {
+        notes.push(mended.time.to_string());
+    }
+    if mended.filled_rows > 0 {
+        notes.push(format!("{} missing rows: filled in along straight lines", mended.filled_rows));
+    }
+    if mended.left_out_rows > 0 {
+        notes.push(format!("{} rows less than half a period behind another: left out", mended.left_out_rows));
+    }
+    if mended.missing_samples > 0 {
+        notes.push(format!("{} missing samples: taken as the last one known", mended.missing_samples));
+    }
+    notes
+}
