@@ -34,7 +34,13 @@ impl<N: Number> Law<N> {
     /// `clamp(w / w_s, -1, 1)`.
     #[inline(always)]
     pub(crate) fn clamp(&self, rate: N) -> N {
-        self.steepness.times(rate).least(N::ONE).most(-N::ONE)
+        if rate >= self.slip_rate {
+            N::ONE
+        } else if rate <= -self.slip_rate {
+            -N::ONE
+        } else {
+            self.steepness.times(rate)
+        }
     }
 
     /// m, for the rate `start` at the start of the period, `free_end` at its end without friction, and b.

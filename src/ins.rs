@@ -9,7 +9,7 @@
 //! are plain sums, `r = sum g` of the products g and `q = sum r`; the trapezoids' half ends are taken out when a result
 //! is read, `v = T (r - g/2)` and `p = T^2 (q - r/2) - T v/2`, since the first product is zero.
 //!
-//! A count is at most 2^31, so that the sums are full after 2^32 rows: 49 days at 1 kHz.
+//! A count is at most 2^30, so that the sums are full after 2^33 rows: 99 days at 1 kHz.
 
 use crate::number::Number;
 use crate::units::Units;
@@ -43,8 +43,8 @@ pub(crate) struct Law<N: Number> {
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(units: &Units, largest_accel: f64, period_s: f64) -> Self {
-        // The same count in both number systems: 2^-31 of the full scales' product.
-        let exponent = libm::frexp(largest_accel).1.max(units.accel + units.gimbal_angle) - 31;
+        // The same count in both number systems: 2^-30 of the full scales' product.
+        let exponent = libm::frexp(largest_accel).1.max(units.accel + units.gimbal_angle) - 30;
         Self { scale: N::coef(libm::ldexp(1.0, -exponent)), count_mps2: libm::ldexp(1.0, exponent), period_s }
     }
 

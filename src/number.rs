@@ -99,7 +99,7 @@ pub trait Number:
     /// A factor of [`Number::count`], for counts of `1 / scale`; as it is for [`Fixed`].
     fn count_scaled(signal: Self, scale: Self::Coef) -> Self;
     /// A product as a whole number of counts, what is left over carried to the next call. For [`Fixed`] a count is
-    /// 2^-31 of the product of the full scales.
+    /// 2^-30 of the product of the full scales.
     fn count(left: Self, scaled: Self, carry: &mut Self) -> i32;
 
     /// Exponent of the smallest full scale that holds `bound`; 0 for `f32`.

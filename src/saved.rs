@@ -125,10 +125,14 @@ trait Codec {
     fn bytes<const L: usize>(&mut self, bytes: &mut [u8; L]);
     fn reject(&mut self);
 
-    fn signal<N: Number>(&mut self, signal: &mut N) {
+    fn bits<N: Number>(&mut self, signal: &mut N) {
         let mut bytes = signal.to_bits().to_le_bytes();
         self.bytes(&mut bytes);
         *signal = N::from_bits(u32::from_le_bytes(bytes));
+    }
+
+    fn signal<N: Number>(&mut self, signal: &mut N) {
+        self.bits(signal);
         if !signal.is_number() {
             self.reject();
         }
@@ -182,7 +186,7 @@ impl<N: Number> crate::ins::State<N> {
     fn walk(&mut self, codec: &mut impl Codec) {
         let (carry, sums) = self.parts();
         for carry in carry {
-            codec.signal(carry);
+            codec.bits(carry);
         }
         for velocity in &mut sums.velocity {
             let mut bytes = velocity.to_le_bytes();

@@ -226,7 +226,7 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn is_number(self) -> bool {
-        true
+        self.0 != i32::MIN
     }
 
     #[inline(always)]
@@ -236,9 +236,10 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn count(left: Self, scaled: Self, carry: &mut Self) -> i32 {
-        let exact = i64::from(left.0) * i64::from(scaled.0) + i64::from(carry.0);
-        *carry = Self((exact & i64::from(LARGEST)) as i32);
-        (exact >> 31) as i32
+        // The carry is the product's lower word, without sign.
+        let exact = i64::from(left.0) * i64::from(scaled.0) + i64::from(carry.0 as u32);
+        *carry = Self(exact as i32);
+        (exact >> 32) as i32
     }
 
     fn exponent(bound: f64) -> i32 {
@@ -274,7 +275,7 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
-        Self::from_raw(bits as i32)
+        Self(bits as i32)
     }
 
     fn wide_to_bits(wide: Wide) -> u64 {

@@ -117,8 +117,8 @@ impl Number for f32 {
 
     #[inline(always)]
     fn within(self, limit: f32) -> bool {
-        // false for NaN
-        self.abs() <= limit
+        // As integers, in which a NaN is larger than every limit.
+        self.to_bits() & !SIGN <= limit.to_bits()
     }
 
     #[inline(always)]
