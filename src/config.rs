@@ -88,60 +88,6 @@ impl Config {
         positive("range.torque_nm", self.range.torque_nm)?;
         within("period_s", self.period_s, 0.25e-3, 4e-3)
     }
-
-    /// A fingerprint of all fields and of the number system, by which a saved state knows its law.
-    pub(crate) fn identity(&self, number: u8) -> u32 {
-        let Self { servo, gyro, bearing, unbalance, range, period_s, interpolation } = self;
-        let [t1, t2, t3, t4, t5] = servo.lead_time_constants_s;
-        let [t6, t7, t8, t9] = servo.lag_time_constants_s;
-        let fields = [
-            servo.gimbal_inertia_kg_m2,
-            servo.gain_nm_per_rad_s,
-            t1,
-            t2,
-            t3,
-            t4,
-            t5,
-            t6,
-            t7,
-            t8,
-            t9,
-            servo.motor_lag_s,
-            gyro.float_inertia_kg_m2,
-            gyro.damping_nm_s_per_rad,
-            gyro.angular_momentum_nm_s,
-            gyro.stop_angle_rad,
-            f64::from(u8::from(gyro.cross_coupling)),
-            f64::from(bearing.count),
-            bearing.preload_n,
-            bearing.gimbal_weight_n,
-            bearing.pitch_diameter_m,
-            bearing.load_torque_nm_per_n,
-            bearing.load_exponent,
-            bearing.static_axial_factor,
-            bearing.static_radial_factor,
-            bearing.torque_axial_factor,
-            bearing.torque_radial_factor,
-            bearing.lubrication_factor,
-            bearing.viscosity_m2ps,
-            bearing.viscous_law.coefficients().0,
-            bearing.slip_rate_radps,
-            unbalance.x_kg_m,
-            unbalance.y_kg_m,
-            range.radial_accel_mps2,
-            range.axial_accel_mps2,
-            range.rate_radps,
-            range.torque_nm,
-            *period_s,
-            f64::from(u8::from(*interpolation == Interpolation::Held)),
-            f64::from(number),
-        ];
-        let mut digest = crate::digest::Digest::default();
-        for field in fields {
-            digest.add(&field.to_bits().to_le_bytes());
-        }
-        digest.folded()
-    }
 }
 
 /// `value` must be finite and above zero.

@@ -1,4 +1,27 @@
 //! Real-time model of a gimballed inertial platform's servo.
+//!
+//! A gimballed inertial navigation system holds a stable member still with gyro-driven servos. Bearing friction and mass
+//! unbalance disturb it, the servo yields, the stable member tilts by phi, and tilt times acceleration becomes velocity
+//! error. This crate models one axis at a fixed period, 1 ms by default, whole loop: gimbal, single-axis gyro with its
+//! stops, servo, friction, unbalance and the velocity and position error.
+//!
+//! ```
+//! use gimbal_servo::{Config, Faults, Input};
+//!
+//! let law = Config::consistent().build::<f32>()?; // once; `Fixed` instead of `f32` where there is no FPU
+//! let mut state = law.start();
+//! // once a millisecond:
+//! let output = law.step(&mut state, Input { accel_y_mps2: 196.1, vehicle_rate_radps: 0.1, ..Input::default() });
+//! assert!(output.faults == Faults::NONE);
+//! # Ok::<(), gimbal_servo::BuildError>(())
+//! ```
+//!
+//! Three kinds of value, three lives: a [`Config`] in SI, which may be wrong; a [`Law`], quantised and immutable; a
+//! [`State`], plain data. Only `build` can fail. `step` does not allocate, panic, loop without bound or read a clock;
+//! what is wrong with its input is a bit of [`Faults`] in its [`Output`]. The same inputs give the same bits on every
+//! machine, in `f32` as in [`Fixed`].
+//!
+//! Features: `serde` derives `Serialize` and `Deserialize` on the configuration. No feature changes a number.
 
 #![no_std]
 #![forbid(unsafe_code)]
@@ -14,6 +37,7 @@ mod free;
 mod friction;
 mod guard;
 pub mod gyro;
+mod identity;
 mod ins;
 mod law;
 mod number;
