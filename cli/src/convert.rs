@@ -39,6 +39,10 @@ pub(crate) struct Args {
     /// integral of the rate [default: vehicle for `AltOS`, stable-member for others]
     #[arg(long, value_enum)]
     accel_frame: Option<Frame>,
+    /// Let the gimbal axis roll with the vehicle, instead of putting a roll gimbal outside of it (`AltOS`, axes across
+    /// the rocket)
+    #[arg(long)]
+    keep_spin: bool,
     /// Rate of the log [Hz]
     #[arg(long, default_value_t = 1000.0)]
     rate_hz: f64,
@@ -79,9 +83,13 @@ pub(crate) fn convert(args: &Args) -> Result<(), Failure> {
     let names = import::header_names(Watched::open(&args.file).map_err(unreadable)?, &args.file)?;
     let altos = args.format == Format::Altos || (args.format == Format::Auto && import::is_altos(&names));
     let map = column_map(args, altos, &names)?;
-    let source = import::read(Watched::open(&args.file).map_err(unreadable)?, &args.file, &map)?;
+    let mut source = import::read(Watched::open(&args.file).map_err(unreadable)?, &args.file, &map)?;
     needed(&source, &args.file, &names)?;
     interrupt::check()?;
+    let despun = altos && args.gimbal_axis != Axis::Roll && !args.keep_spin;
+    if despun && let Some(roll_rate_radps) = import::roll_rate_radps(&source) {
+        import::take_out_roll(&mut source, &roll_rate_radps);
+    }
 
     let mut resampled =
         take_span(&source, args).map_err(|wrong| Failure::input(format!("{}: {wrong}", args.file.display())))?;
@@ -96,7 +104,7 @@ pub(crate) fn convert(args: &Args) -> Result<(), Failure> {
     resampled.log.write(&mut file).map_err(fail())?;
     interrupt::check()?;
     file.commit().map_err(fail())?;
-    let told = told::Told { args, resampled: &resampled, altos, turned: frame == Frame::Vehicle };
+    let told = told::Told { args, resampled: &resampled, altos, despun, turned: frame == Frame::Vehicle };
     report::print(&told.text(), args.json.then(|| told.json()).as_ref())
 }
 

@@ -18,6 +18,8 @@ const LEFT: u32 = 84;
 const RIGHT: u32 = 24;
 /// Room for the name, the unit and the legend above a panel.
 const CAPTION_HEIGHT: i32 = 26;
+/// Lines longer than this are drawn without dashes [pixels].
+const MOST_DASHED_PX: f64 = 20_000.0;
 const FONT: &str = "sans-serif";
 const INK: RGBColor = RGBColor(34, 34, 34);
 const GRID: RGBColor = RGBColor(214, 214, 214);
@@ -90,7 +92,7 @@ impl Figure<'_> {
             let last = index + 1 == self.panels.len();
             let room = PANEL_HEIGHT + if last { TIME_LABEL_HEIGHT } else { 0 };
             let (area, next) = rest.split_vertically(room);
-            self.draw_panel(panel, &area, span, last)?;
+            self.draw_panel(panel, &area, span, (index == 0, last))?;
             rest = next;
         }
         root.present()?;
@@ -102,7 +104,7 @@ impl Figure<'_> {
         panel: &Panel,
         area: &DrawingArea<SVGBackend, Shift>,
         (from_s, to_s): (f64, f64),
-        last: bool,
+        (first, last): (bool, bool),
     ) -> Result<(), Box<dyn std::error::Error>> {
         let values = || panel.lines.iter().flat_map(|line| line.points.iter().map(|(_, value)| *value));
         let least = values().fold(0.0, f64::min);
@@ -141,14 +143,15 @@ impl Figure<'_> {
         for (line, (color, width, dash)) in panel.lines.iter().zip(STYLES) {
             let style = color.stroke_width(width);
             let points: Vec<(f64, f64)> = line.points.iter().map(|&(time_s, value)| (time_s, value * factor)).collect();
-            match dash {
+            // Dashes on a band of noise show nothing, and there would be a hundred thousand of them.
+            match dash.filter(|_| path_px(&points, most - least) < MOST_DASHED_PX) {
                 None => chart.draw_series(LineSeries::new(points, style)).map(|_| ())?,
                 Some((on, off)) => {
                     chart.draw_series(DashedLineSeries::new(points, on, off, style)).map(|_| ())?;
                 }
             }
         }
-        self.caption(panel, prefix, area)
+        self.caption(panel, prefix, first, area)
     }
 
     /// Name and unit on the left, legend on the right.
@@ -156,6 +159,7 @@ impl Figure<'_> {
         &self,
         panel: &Panel,
         prefix: &str,
+        first: bool,
         area: &DrawingArea<SVGBackend, Shift>,
     ) -> Result<(), Box<dyn std::error::Error>> {
         let font = || (FONT, 15).into_font().color(&INK);
@@ -180,7 +184,7 @@ impl Figure<'_> {
             }
             x -= 64;
         }
-        if !self.shaded.is_empty() {
+        if first && !self.shaded.is_empty() {
             x -= width_of(self.shaded_name) - 24;
             area.draw(&Rectangle::new([(x - 26, y - 6), (x - 8, y + 6)], SHADE.filled()))?;
             area.draw(&Text::new(self.shaded_name.to_owned(), (x, 6), font()))?;
@@ -193,6 +197,12 @@ impl Figure<'_> {
         let (from_s, to_s) = (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max));
         if to_s > from_s { (from_s, to_s) } else { (0.0, 1.0) }
     }
+}
+
+/// Length of a line on paper, up and down [pixels].
+fn path_px(points: &[(f64, f64)], range: f64) -> f64 {
+    let ways = points.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs());
+    ways.sum::<f64>() / range * f64::from(PANEL_HEIGHT)
 }
 
 /// Width of a text in the captions, roughly.

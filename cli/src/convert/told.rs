@@ -13,6 +13,7 @@ pub(super) struct Told<'a> {
     pub(super) args: &'a Args,
     pub(super) resampled: &'a Resampled,
     pub(super) altos: bool,
+    pub(super) despun: bool,
     pub(super) turned: bool,
 }
 
@@ -23,6 +24,9 @@ impl Told<'_> {
         let mut text = format!("{}: {}", args.file.display(), resampled.source);
         if self.altos {
             let _ = write!(text, "\nAltOS export; gimbal axis z along the vehicle's {} axis", self.axis());
+        }
+        if self.despun {
+            text += "\nroll taken out, as a roll gimbal outside of the gimbal axis does";
         }
         if resampled.averaged_rows > 0 {
             let _ = write!(text, "\n{} rows with the time stamp of the row before: averaged", resampled.averaged_rows);
@@ -66,6 +70,7 @@ impl Told<'_> {
             "rate_hz": self.rate_hz(),
             "format": if self.altos { "altos" } else { "csv" },
             "gimbal_axis": self.altos.then(|| self.axis()),
+            "roll_taken_out": self.despun,
             "turned_into_stable_member": self.turned,
             "source": {
                 "rows": source.rows,

@@ -63,11 +63,11 @@ impl Picture {
         let shaded = self.stop.spans_above(0.5);
         let [accel_x, accel_y, accel_z] = &self.accel;
         let [velocity_x, velocity_y] = &self.velocity;
-        let mut panels = vec![Panel::new(
-            "Specific force",
-            "m/s2",
-            vec![Line::new("x", accel_x), Line::new("y", accel_y), Line::new("z", accel_z)],
-        )];
+        let mut panels = Vec::new();
+        if !self.accel.iter().all(Envelope::is_zero) {
+            let lines = vec![Line::new("x", accel_x), Line::new("y", accel_y), Line::new("z", accel_z)];
+            panels.push(Panel::new("Specific force", "m/s2", lines));
+        }
         if !self.rate.is_zero() {
             panels.push(Panel::new("Vehicle rate about z", "rad/s", vec![Line::new("rate", &self.rate)]));
         }
@@ -85,7 +85,10 @@ impl Picture {
                 Line::new("unbalance", &self.unbalance_torque),
             ],
         ));
-        panels.push(Panel::new("Velocity error", "m/s", vec![Line::new("x", velocity_x), Line::new("y", velocity_y)]));
+        if !self.velocity.iter().all(Envelope::is_zero) {
+            let lines = vec![Line::new("x", velocity_x), Line::new("y", velocity_y)];
+            panels.push(Panel::new("Velocity error", "m/s", lines));
+        }
         let figure = Figure { title, panels, shaded: &shaded, shaded_name: "gyro on its stop" };
         let text = figure.draw().map_err(|error| Failure::Environment(anyhow::Error::msg(error)))?;
         let fail = || Failure::write(path);

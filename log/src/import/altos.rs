@@ -4,7 +4,7 @@
 //! Whichever body axis is the gimbal's, gimbal axes are a rotation of body axes: determinant +1.
 
 use super::map::{ColumnMap, Source};
-use crate::Column;
+use crate::{Column, Log};
 
 /// The axis of the vehicle along which the gimbal axis z lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,6 +26,13 @@ const SIGNATURE: [&str; 8] =
 #[must_use]
 pub fn is_altos(names: &[String]) -> bool {
     SIGNATURE.iter().all(|wanted| names.iter().any(|name| name == wanted))
+}
+
+/// Rate about the vehicle's x axis [rad/s], where no column of the log takes it.
+#[must_use]
+pub fn roll_rate_radps(log: &Log) -> Option<Vec<f64>> {
+    let extra = log.extras().iter().find(|extra| extra.name == "gyro_roll")?;
+    Some(extra.numbers().into_iter().map(f64::to_radians).collect())
 }
 
 impl GimbalAxis {
