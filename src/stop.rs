@@ -8,13 +8,14 @@
 //!
 //! Exact for a torque held over each period. The float leaves the stop when phi' points away from it.
 //!
-//! **Contact and release within a period.** Both are placed on the cubic through the ends of the period
-//! ([`crate::crossing`]). After a contact the free law has run on for the rest `h` of the period with an excess
-//! `e = theta - stop`; what that excess did is taken out of y, `z_i`, phi' and phi, theta' taken linear over the rest. After a
-//! release the float has moved for the rest of the period, pulled by a phi' that grows linearly from zero.
+//! Contact and release within a period are placed on the cubic through the ends of the period
+//! ([`crate::crossing`]); [`contact`] and [`release`] tell what happens for the rest of it.
+
+pub(crate) mod contact;
+mod curve;
+pub(crate) mod release;
 
 use crate::build::plant::{LAGS, Plant};
-use crate::crossing::Arc;
 use crate::number::Number;
 use crate::row::ScaledRow;
 use crate::units::Units;
@@ -46,61 +47,8 @@ pub(crate) struct Law<N: Number> {
     motor_torque: ScaledRow<N, { LAGS + 2 }>,
     /// Change of phi' over a period for a torque of 1: `T / Jg`.
     pub(crate) gimbal_rate_gain: ScaledRow<N, 1>,
-    contact: Contact<N>,
-    release: Release<N>,
-}
-
-/// Factors of the contact's correction; `e` angles, `h` and sums over it in periods.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Contact<N: Number> {
-    lags: [LagTail<N>; LAGS],
-    /// y for the excess's sum.
-    integrator: ScaledRow<N, 1>,
-    /// phi' for the excess, the excess's sum, and the changes of `z_i`.
-    gimbal_rate: ScaledRow<N, { LAGS + 2 }>,
-    /// Of which phi' that the motor torque made.
-    motor_share: ScaledRow<N, { LAGS + 2 }>,
-    /// phi for the excess's sum and for phi' that the motor torque made.
-    gimbal_angle: ScaledRow<N, 2>,
-}
-
-/// Response of one lag to a rate that changes linearly over the last `h` of a period.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct LagTail<N: Number> {
-    /// `p T`.
-    exponent: ScaledRow<N, 1>,
-    curve: Curve<N>,
-    gain: ScaledRow<N, 1>,
-}
-
-/// `(e^(x h) - 1 - x h) / (x h)^2` for `0 <= h <= 1`, a polynomial in h.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Curve<N: Number>([N; CURVE]);
-
-const CURVE: usize = 7;
-/// Curves and exponents are held in a full scale of 8.
-const CURVE_SCALE: i32 = 3;
-
-/// What the float has done by the end of the period in which it left the stop.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Release<N: Number> {
-    curve: Curve<N>,
-    /// theta' for phi' at the end, weighted.
-    gyro_rate: ScaledRow<N, 1>,
-    /// theta for theta', a third of the time.
-    gyro_angle: ScaledRow<N, 1>,
-    lags: [ScaledRow<N, 1>; LAGS],
-    /// phi less the offset, for theta and theta'.
-    gimbal_angle: ScaledRow<N, 2>,
-}
-
-/// The physical state when the gyro has left its stop.
-pub(crate) struct Released<N: Number> {
-    pub(crate) gyro_angle: N,
-    pub(crate) gyro_rate: N,
-    pub(crate) lags: [N; LAGS],
-    /// (Jo theta' + Bo theta) / H.
-    pub(crate) gimbal_angle: N::Wide,
+    pub(crate) contact: contact::Law<N>,
+    pub(crate) release: release::Law<N>,
 }
 
 impl<N: Number> Law<N> {
@@ -137,8 +85,8 @@ impl<N: Number> Law<N> {
             ),
             motor_torque: ScaledRow::build([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, d], torque_scales, motor_scale),
             gimbal_rate_gain: ScaledRow::build([period / jg], [units.torque], units.gimbal_rate),
-            contact: Contact::build(plant, units, period),
-            release: Release::build(plant, units, period),
+            contact: contact::Law::build(plant, units, period),
+            release: release::Law::build(plant, units, period),
         }
     }
 
@@ -174,50 +122,6 @@ impl<N: Number> Law<N> {
             *lag = N::low(*lag) + *decay * N::narrow(*lag);
         }
     }
-
-    /// Takes out of the end of a period what theta's run beyond its stop has done. `arc` is theta's excess, mirrored
-    /// to the positive stop, as `side` mirrors the results back; `share` of the period came before the contact.
-    pub(crate) fn meet(&self, state: &mut State<N>, arc: &Arc<N>, share: N, side: Side) {
-        let contact = &self.contact;
-        let rest = N::ONE - share;
-        let first = arc.slope(share);
-        let last = arc.end_slope;
-        // Sum of the excess over the rest of the period, for a linear slope.
-        let sum = ((first + first + last).times(rest).times(rest)).times(contact_sixth::<N>());
-        let changes: [N; LAGS] = core::array::from_fn(|i| -contact.lags[i].response(first, last - first, rest));
-        let [a, b, c, d, e] = changes;
-        let signals = [arc.end, sum, a, b, c, d, e];
-        let motor_share = contact.motor_share.at(&signals);
-        let apply = |wide: N::Wide, change: N| wide + side.mirror(change).widen();
-        state.gimbal_angle = state.gimbal_angle
-            + contact.gimbal_angle.increment(&[side.mirror(sum), side.mirror(motor_share.times(rest))]);
-        state.gimbal_rate = apply(state.gimbal_rate, contact.gimbal_rate.at(&signals));
-        state.integrator = apply(state.integrator, -contact.integrator.at(&[sum]));
-        for (lag, change) in state.lags.iter_mut().zip(changes) {
-            *lag = N::confine(*lag + side.mirror(change).widen());
-        }
-    }
-
-    /// The float at the end of the period, `rest` of it after the release; `gimbal_rate` is phi' at that end.
-    pub(crate) fn leave(&self, state: &State<N>, stop: N, gimbal_rate: N, rest: N) -> Released<N> {
-        let release = &self.release;
-        let weighted = gimbal_rate.times(rest).times(release.curve.at(rest)).shift_up(CURVE_SCALE_SHIFT);
-        let gyro_rate = release.gyro_rate.at(&[weighted]);
-        let moved = release.gyro_angle.at(&[gyro_rate.times(rest)]);
-        let gyro_angle = stop + moved;
-        Released {
-            gyro_angle,
-            gyro_rate,
-            lags: core::array::from_fn(|i| N::narrow(state.lags[i]) + release.lags[i].at(&[moved])),
-            gimbal_angle: release.gimbal_angle.increment(&[gyro_angle, gyro_rate]),
-        }
-    }
-}
-
-const CURVE_SCALE_SHIFT: u32 = 3;
-
-fn contact_sixth<N: Number>() -> N {
-    N::quantise(1.0 / 6.0, 0)
 }
 
 /// Which stop.
@@ -237,93 +141,5 @@ impl Side {
             Self::Positive => value,
             Self::Negative => -value,
         }
-    }
-}
-
-impl<N: Number> Contact<N> {
-    fn build(plant: &Plant, units: &Units, period: f64) -> Self {
-        let jg = plant.gimbal_inertia;
-        let [l1, l2, l3, l4, l5] = units.lags;
-        let scales = [units.gyro_angle, units.gyro_angle, l1, l2, l3, l4, l5];
-        // Integral of the change of T_m over the rest: -D sum T + sum (dz_i + (r_i / p_i) e) / p_i
-        let excess: f64 = plant.lag_gains.iter().zip(&plant.lags).map(|(gain, pole)| gain / pole).sum();
-        let [p1, p2, p3, p4, p5] = plant.lags.map(|pole| -1.0 / (pole * jg));
-        let motor = [-excess / jg, plant.direct_gain() * period / jg, p1, p2, p3, p4, p5];
-        let mut rate = motor;
-        rate[0] += plant.momentum / jg;
-        Self {
-            lags: core::array::from_fn(|i| LagTail {
-                exponent: ScaledRow::build([plant.lags[i] * period], [units.gyro_angle], units.gyro_angle),
-                curve: Curve::build(plant.lags[i] * period),
-                gain: ScaledRow::build([plant.lag_gains[i]], [units.gyro_angle], units.lags[i]),
-            }),
-            integrator: ScaledRow::build([plant.integrator_gain * period], [units.gyro_angle], units.motor_torque),
-            gimbal_rate: ScaledRow::build(rate, scales, units.gimbal_rate),
-            motor_share: ScaledRow::build(motor, scales, units.gimbal_rate),
-            // A torque that grows with the square of the time adds a quarter of its phi' times the time.
-            gimbal_angle: ScaledRow::build(
-                [plant.momentum * period / jg, 0.25 * period],
-                [units.gyro_angle, units.gimbal_rate],
-                units.gimbal_angle,
-            ),
-        }
-    }
-}
-
-impl<N: Number> LagTail<N> {
-    /// `(r / p)` times the integral of `e^(p (h - t)) e'(t)` over the last `h = rest` of the period, with
-    /// `e'(t) = first + bend t / h`.
-    fn response(&self, first: N, bend: N, rest: N) -> N {
-        let curved = self.exponent.at(&[first.times(rest)]) + bend;
-        let sum = first + curved.times(self.curve.at(rest)).shift_up(CURVE_SCALE_SHIFT);
-        self.gain.at(&[sum.times(rest)])
-    }
-}
-
-impl<N: Number> Release<N> {
-    fn build(plant: &Plant, units: &Units, period: f64) -> Self {
-        let (jo, bo, h) = (plant.float_inertia, plant.damping, plant.momentum);
-        Self {
-            curve: Curve::build(-bo / jo * period),
-            gyro_rate: ScaledRow::build([h / jo * period], [units.gimbal_rate], units.gyro_rate()),
-            gyro_angle: ScaledRow::build([period / 3.0], [units.gyro_rate()], units.gyro_angle),
-            lags: core::array::from_fn(|i| ScaledRow::build([plant.lag_gains[i]], [units.gyro_angle], units.lags[i])),
-            gimbal_angle: ScaledRow::build([bo / h, jo / h], [units.gyro_angle, units.gyro_rate()], units.gimbal_angle),
-        }
-    }
-}
-
-impl<N: Number> Curve<N> {
-    /// Interpolates at Chebyshev's points of 0..1; a lag faster than an eighth of the period counts as one of that.
-    fn build(exponent: f64) -> Self {
-        let x = exponent.max(-8.0);
-        let exact = |h: f64| {
-            let y = x * h;
-            if y > -1e-3 { 0.5 + y / 6.0 + y * y / 24.0 } else { (libm::expm1(y) - y) / (y * y) }
-        };
-        let node = |i: usize| 0.5 - 0.5 * libm::cos(core::f64::consts::PI * (i as f64 + 0.5) / CURVE as f64);
-        // Newton's divided differences, then the polynomial's own coefficients from the innermost bracket outwards.
-        let mut differences: [f64; CURVE] = core::array::from_fn(|i| exact(node(i)));
-        for level in 1..CURVE {
-            for i in (level..CURVE).rev() {
-                differences[i] = (differences[i] - differences[i - 1]) / (node(i) - node(i - level));
-            }
-        }
-        let mut powers = [0.0; CURVE];
-        for i in (0..CURVE).rev() {
-            for j in (1..CURVE).rev() {
-                powers[j] = powers[j - 1] - node(i) * powers[j];
-            }
-            powers[0] = differences[i] - node(i) * powers[0];
-        }
-        Self(powers.map(|power| N::quantise(power, CURVE_SCALE)))
-    }
-
-    fn at(&self, rest: N) -> N {
-        let mut value = N::ZERO;
-        for power in self.0.iter().rev() {
-            value = value.times(rest) + *power;
-        }
-        value
     }
 }
