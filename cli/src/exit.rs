@@ -52,6 +52,19 @@ impl Failure {
     }
 }
 
+/// Ends a call that is none: help and version as they are, a mistake on one line.
+pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    let text = error.to_string();
+    let told = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
+    let told: Vec<&str> = told.filter(|line| !line.is_empty() && !line.starts_with("For more")).collect();
+    eprintln!("{}", told.join("; "));
+    ExitCode::from(2)
+}
+
 /// Tells the failure and gives the exit status.
 pub(crate) fn code(result: Result<(), Failure>) -> ExitCode {
     let (message, status) = match result {
