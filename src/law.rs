@@ -27,6 +27,8 @@ pub struct Law<N: Number> {
     pub(crate) friction: friction::Law<N>,
     pub(crate) free: free::Law<N>,
     pub(crate) small_angle: N,
+    /// A torque of no effect that keeps decayed modes out of subnormal numbers, on which many processors are slow.
+    pub(crate) stir: N,
     /// phi' to the full scale of rates.
     pub(crate) rate_shift: u32,
     /// Disturbance torques to the full scale of motor torques.
@@ -75,6 +77,7 @@ impl Config {
             drift_angle: ScaledRow::build([-0.5 * period], [units.gimbal_rate], units.gimbal_angle),
             drift_scale: ScaledRow::build([1.0], [units.gyro_angle + units.rate], units.gimbal_rate),
             largest_drift_torque: N::quantise(range.torque_nm, units.torque),
+            stir: N::quantise(1e-25, units.torque),
             small_angle: N::quantise(0.1, units.gimbal_angle),
             identity: self.identity(N::TAG),
             units,

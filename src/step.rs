@@ -64,7 +64,7 @@ impl<N: Number> Law<N> {
         let quiet_rate = self.free.gimbal_rate(&heads, quiet_change);
         let brake = self.free.gimbal_rate_gain.at(&[acting.friction_level]);
         let torque = self.torque(state, &acting, quiet_rate, brake);
-        let change = torque - state.torque;
+        let change = torque - state.torque + self.stir;
         let sensed_rate = quiet_rate + self.free.gimbal_rate_gain.at(&[change - quiet_change]);
         let moved = self.free.advance(&mut state.free, &heads, change);
         state.torque = torque;

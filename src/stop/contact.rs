@@ -68,7 +68,7 @@ impl<N: Number> Law<N> {
     }
 
     /// Takes out of the end of a period what theta's run beyond its stop has done. `arc` is theta's excess, mirrored
-    /// to the positive stop, as `side` mirrors the results back; `share` of the period came before the self.
+    /// to the positive stop, as `side` mirrors the results back; `share` of the period came before the contact.
     pub(crate) fn correct(&self, state: &mut State<N>, arc: &Arc<N>, share: N, side: Side) {
         let rest = N::ONE - share;
         let first = arc.slope(share);
