@@ -17,6 +17,12 @@ struct Board {
     flash: Region,
     ram: Region,
     counter: Counter,
+    watchdog: Option<Watchdog>,
+}
+
+#[derive(Deserialize)]
+struct Watchdog {
+    address: u32,
 }
 
 #[derive(Deserialize)]
@@ -38,11 +44,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var("OUT_DIR")?);
     write_vectors(&out)?;
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
-        return write_constants(&out, "host", 1_000_000);
+        return write_constants(&out, "host", 1_000_000, None);
     }
     let target = env::var("TARGET")?;
     let (name, board) = choose(&target)?;
-    write_constants(&out, &name, board.counter.hz)?;
+    write_constants(&out, &name, board.counter.hz, board.watchdog.as_ref())?;
     link(&out, &target, &board)
 }
 
@@ -65,21 +71,32 @@ fn choose(target: &str) -> Result<(String, Board), Box<dyn Error>> {
     found.pop().ok_or_else(|| format!("firmware/boards/ has no board {asked:?} for {target}; set GIMBAL_BOARD").into())
 }
 
-fn write_constants(out: &Path, name: &str, counter_hz: u32) -> Result<(), Box<dyn Error>> {
-    let mhz = counter_hz / 1_000_000;
+fn write_constants(out: &Path, name: &str, counter_hz: u32, watchdog: Option<&Watchdog>) -> Result<(), Box<dyn Error>> {
+    let counter_hz = thousands(counter_hz);
+    let watchdog = watchdog.map_or("None".into(), |watchdog| format!("Some({})", grouped(watchdog.address)));
     let text = format!(
         "/// Name of the board: its file in `boards/`.\npub const NAME: &str = \"{name}\";\n\
-         /// Rate of the instruction counter in virtual time [1/s].\npub const COUNTER_HZ: u32 = {mhz} * 1_000_000;\n"
+         /// Rate of the instruction counter in virtual time [1/s].\npub const COUNTER_HZ: u32 = {counter_hz};\n\
+         /// Base address of the CMSDK watchdog, if the board has one.\npub const WATCHDOG: Option<u32> = {watchdog};\n"
     );
     Ok(fs::write(out.join("board.rs"), text)?)
+}
+
+/// A number as it is written by hand.
+fn thousands(number: u32) -> String {
+    if number < 1_000 { number.to_string() } else { format!("{}_{:03}", thousands(number / 1_000), number % 1_000) }
+}
+
+/// An address as it is written by hand.
+fn grouped(address: u32) -> String {
+    format!("{:#06x}_{:04x}", address >> 16, address & 0xFFFF)
 }
 
 /// The committed flight as an array: the boards have no files.
 fn write_vectors(out: &Path) -> Result<(), Box<dyn Error>> {
     let text = fs::read_to_string("vectors/flight.csv")?;
     let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).skip(1).collect();
-    let array: String = rows.iter().map(|row| format!("    [{row}],\n")).collect();
-    Ok(fs::write(out.join("flight.rs"), format!("[\n{array}]\n"))?)
+    Ok(fs::write(out.join("flight.rs"), format!("[\n    [{}],\n]\n", rows.join("],\n    [")))?)
 }
 
 /// Link arguments for every program of this package.

@@ -30,27 +30,46 @@ pub const FLIGHT: Case = Case { name: "flight", config: Config::consistent, row:
 /// A torque that throws the gyro from stop to stop.
 pub const STOPS: Case = Case { name: "stops", config: Config::consistent, row: stops_row, steps: 10_000 };
 
+/// The recorded flight six times over: a minute for the program `flight`.
+pub const MINUTE: Case = Case { name: "minute", config: Config::consistent, row: minute_row, steps: 60_000 };
+
+fn minute_row(k: u32) -> Input<f64> {
+    flight_row(k % FLIGHT.steps)
+}
+
 impl Case {
-    /// Steps through the whole case and returns the digest of everything that came out; 0 if the law cannot be built.
+    /// Digest of everything that comes out over the whole case, the INS sums too; 0 if the law cannot be built.
     #[must_use]
+    pub fn digest<N: Number>(&self) -> u64 {
+        self.run::<N>().map_or(0, |(mut digest, sums)| {
+            for sum in sums {
+                digest.add(&sum.to_bits().to_le_bytes());
+            }
+            digest.value()
+        })
+    }
+
+    /// Digest of the outputs alone; 0 if the law cannot be built.
+    #[must_use]
+    pub fn output_digest<N: Number>(&self) -> u64 {
+        self.run::<N>().map_or(0, |(digest, _)| digest.value())
+    }
+
+    /// Steps through the whole case: the digest of the outputs, and velocity and position error at the end.
     // Not inlined: the laws of all cases at once would not fit the stack of the smallest board.
     #[inline(never)]
-    pub fn digest<N: Number>(&self) -> u64 {
+    fn run<N: Number>(&self) -> Option<(Digest, [f64; 4])> {
         // By reference: a law is some kilobytes, and moving it out would make a copy.
         let built = (self.config)().build::<N>();
-        let Ok(law) = &built else { return 0 };
+        let Ok(law) = &built else { return None };
         let mut state = law.start();
         let mut digest = Digest::default();
         for k in 0..self.steps {
             let output = law.step(&mut state, self.input(law, k));
             digest.add_output(&output);
         }
-        let velocity = law.velocity_error_mps(&state);
-        let position = law.position_error_m(&state);
-        for sum in velocity.into_iter().chain(position) {
-            digest.add(&sum.to_bits().to_le_bytes());
-        }
-        digest.value()
+        let ([vx, vy], [px, py]) = (law.velocity_error_mps(&state), law.position_error_m(&state));
+        Some((digest, [vx, vy, px, py]))
     }
 
     /// Row of step `k` as the law takes it.
@@ -125,7 +144,7 @@ fn variant_row(k: u32) -> Input<f64> {
     Input { spin_rate_radps: swing, ..flight_row(k) }
 }
 
-/// Scrambles 32 bits (the finaliser of MurmurHash3).
+/// Scrambles 32 bits (the finaliser of `MurmurHash3`).
 fn mix(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x85EB_CA6B);
     x = (x ^ (x >> 13)).wrapping_mul(0xC2B2_AE35);

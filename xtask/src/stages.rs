@@ -46,6 +46,7 @@ impl Stages {
             Stage { name: "target-counter", run: target::calibration::check },
             Stage { name: "target-addresses", run: target::addresses::check },
             Stage { name: "target-digests", run: target::digests::check },
+            Stage { name: "target-flight", run: target::flight::check },
             Stage { name: "target-gates", run: target::gates::check },
             Stage { name: "target-stack", run: target::stack::check },
             Stage { name: "target-budget", run: target::budget::check },
