@@ -61,7 +61,7 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     let text = error.to_string();
     let told = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
     let told: Vec<&str> = told.filter(|line| !line.is_empty() && !line.starts_with("For more")).collect();
-    eprintln!("{}", told.join("; "));
+    eprintln!("{}", told.join("; ").replace(":; ", ": "));
     ExitCode::from(2)
 }
 

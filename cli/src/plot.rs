@@ -120,11 +120,11 @@ impl Figure<'_> {
             .set_label_area_size(LabelAreaPosition::Bottom, if last { 40 } else { 8 })
             .build_cartesian_2d(from_s..to_s, (least - margin)..(most + margin))?;
         let corners = [least - margin, most + margin];
-        chart.draw_series(
-            self.shaded
-                .iter()
-                .map(|&(from_s, to_s)| Rectangle::new([(from_s, corners[0]), (to_s, corners[1])], SHADE.filled())),
-        )?;
+        // No span is too short to be seen.
+        let least_s = 2.0 * (to_s - from_s) / f64::from(WIDTH - LEFT - RIGHT);
+        let spans =
+            self.shaded.iter().map(|&(from_s, to_s)| [(from_s, corners[0]), (to_s.max(from_s + least_s), corners[1])]);
+        chart.draw_series(spans.map(|corners| Rectangle::new(corners, SHADE.filled())))?;
         let mut mesh = chart.configure_mesh();
         mesh.light_line_style(TRANSPARENT)
             .bold_line_style(GRID)

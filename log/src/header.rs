@@ -128,12 +128,20 @@ fn other_unit(layout: &Layout, column: Column) -> Option<(usize, &'static str)> 
     })
 }
 
+/// Likeness from which a name counts as meant, of 1.
+const NEAR: f64 = 0.7;
+
 /// What to say when a name is not among those there.
 pub(crate) fn nearest_hint<'a>(wanted: &str, there: impl Iterator<Item = &'a str>) -> String {
     let distance = |name: &str| strsim::jaro_winkler(wanted, &name.to_ascii_lowercase());
-    let nearest = there.max_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let there: Vec<&str> = there.filter(|name| !name.is_empty()).collect();
+    let nearest = there.iter().copied().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     match nearest {
-        Some(name) if !name.is_empty() => format!("the nearest header is `{}`", clip(name.as_bytes())),
-        _ => "add it to the header".to_owned(),
+        None => "add it to the header".to_owned(),
+        Some(name) if distance(name) >= NEAR => format!("the nearest header is `{}`", clip(name.as_bytes())),
+        Some(_) => {
+            let names: Vec<String> = there.iter().take(12).map(|name| clip(name.as_bytes())).collect();
+            format!("none is near it in {}", names.join(", "))
+        }
     }
 }
