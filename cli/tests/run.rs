@@ -55,8 +55,9 @@ fn cross_flight_law_agrees_with_the_reference_plant_on_a_log() {
     assert_eq!((&law["samples"], &plant["number"]), (&plant["samples"], &"plant".into()));
     for key in ["peak_gimbal_angle_rad", "peak_gyro_angle_rad", "velocity_error_mps", "position_error_m"] {
         let (law, plant) = (number(&law, key), number(&plant, key));
-        // The law takes the mean over a period for the line: (w T)^2 / 12 at the loop's 500 rad/s is 2 %, far less here.
-        assert!((law - plant).abs() < 5e-3 * plant.abs(), "{key}: {law} against {plant}");
+        // The law takes the mean over a period, the plant the line: they differ by (w T)^2 / 12, 2 % at the loop's
+        // 500 rad/s, of the fast part of a reversal, which is below a twentieth of the peak.
+        assert!((law - plant).abs() < 1e-3 * plant.abs(), "{key}: {law} against {plant}");
     }
 }
 
