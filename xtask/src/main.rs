@@ -20,6 +20,7 @@ usage: cargo xtask <task>
   list                 names of the stages
   cost [--target BOARD] [--json]
                        instructions, flash, state and stack of the step on an emulated board
+  profile [BOARD]      where the instructions of the step go, function by function of the source
   budget               writes the figures of every board to firmware/budget/, which `test` compares with
   deny                 cargo-deny on the whole tree; installs it if absent (minutes)
 ";
@@ -35,6 +36,8 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         ["cost", rest @ ..] => cost(rest),
+        ["profile"] => task(&|| target::profile::print(target::DEFAULT_BOARD)),
+        ["profile", board] => task(&|| target::profile::print(board)),
         ["budget"] => task(&target::budget::write),
         ["deny"] => task(&host::deny::install_and_check),
         ["help" | "--help" | "-h"] => {

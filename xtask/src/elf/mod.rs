@@ -7,7 +7,7 @@ mod stack_sizes;
 mod thumb;
 
 pub(crate) use code::functions;
-pub(crate) use reach::Reach;
+pub(crate) use reach::{Reach, addresses};
 pub(crate) use stack_sizes::stack_sizes;
 
 use anyhow::{Context, Result, bail};

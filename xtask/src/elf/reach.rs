@@ -2,7 +2,7 @@
 
 use super::code::Function;
 use anyhow::{Context, Result, bail};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What is reachable from one function.
 pub(crate) struct Reach {
@@ -29,6 +29,20 @@ impl Reach {
     pub(crate) fn code_bytes(&self) -> u32 {
         self.functions.iter().map(|(function, _)| function.bytes).sum()
     }
+}
+
+/// Addresses of everything that the function at `root` reaches, the ways into a panic left out.
+pub(crate) fn addresses(functions: &BTreeMap<u32, Function>, root: u32) -> BTreeSet<u32> {
+    let mut found = BTreeSet::new();
+    let mut open = vec![root];
+    while let Some(address) = open.pop() {
+        let Some(function) = functions.get(&address) else { continue };
+        let panics = function.names.iter().any(|name| name.contains("panic"));
+        if !panics && found.insert(address) {
+            open.extend(&function.calls);
+        }
+    }
+    found
 }
 
 struct Walk<'a> {
