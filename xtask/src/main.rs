@@ -3,11 +3,11 @@
 //! Exit status: 0 all passed, 1 a check failed, 2 the call is wrong, 3 something needed is missing and cannot be
 //! installed from here.
 
+mod board;
 mod elf;
 mod host;
 mod shell;
 mod stages;
-mod target;
 
 use anyhow::Result;
 use stages::{Missing, Stages};
@@ -36,9 +36,9 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         ["cost", rest @ ..] => cost(rest),
-        ["profile"] => task(&|| target::profile::print(target::DEFAULT_BOARD)),
-        ["profile", board] => task(&|| target::profile::print(board)),
-        ["budget"] => task(&target::budget::write),
+        ["profile"] => task(&|| board::profile::print(board::DEFAULT_BOARD)),
+        ["profile", board] => task(&|| board::profile::print(board)),
+        ["budget"] => task(&board::budget::write),
         ["deny"] => task(&host::deny::install_and_check),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
@@ -61,7 +61,7 @@ fn test(stages: &Stages) -> ExitCode {
 
 /// `cost`: for the default board unless another is named.
 fn cost(words: &[&str]) -> ExitCode {
-    let (mut board, mut json) = (target::DEFAULT_BOARD, false);
+    let (mut board, mut json) = (board::DEFAULT_BOARD, false);
     let mut words = words.iter();
     while let Some(&word) = words.next() {
         match (word, words.len()) {
@@ -73,7 +73,7 @@ fn cost(words: &[&str]) -> ExitCode {
             }
         }
     }
-    task(&|| target::cost::print(board, json))
+    task(&|| board::cost::print(board, json))
 }
 
 /// One task by itself, with the exit status of its error.

@@ -2,7 +2,7 @@
 //!
 //! A failed stage does not stop the later ones: one run shows everything that is wrong.
 
-use crate::{host, target};
+use crate::{board, host};
 use anyhow::Result;
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -41,15 +41,15 @@ impl Stages {
             Stage { name: "documents", run: host::documents::check },
             Stage { name: "oldest-rust", run: host::oldest_rust::check },
             Stage { name: "digests", run: host::digests::check },
-            Stage { name: "target-setup", run: target::setup::check },
-            Stage { name: "target-lints", run: target::lints::check },
-            Stage { name: "target-counter", run: target::calibration::check },
-            Stage { name: "target-addresses", run: target::addresses::check },
-            Stage { name: "target-digests", run: target::digests::check },
-            Stage { name: "target-flight", run: target::flight::check },
-            Stage { name: "target-gates", run: target::gates::check },
-            Stage { name: "target-stack", run: target::stack::check },
-            Stage { name: "target-budget", run: target::budget::check },
+            Stage { name: "target-setup", run: board::setup::check },
+            Stage { name: "target-lints", run: board::lints::check },
+            Stage { name: "target-counter", run: board::calibration::check },
+            Stage { name: "target-addresses", run: board::addresses::check },
+            Stage { name: "target-digests", run: board::digests::check },
+            Stage { name: "target-flight", run: board::flight::check },
+            Stage { name: "target-gates", run: board::gates::check },
+            Stage { name: "target-stack", run: board::stack::check },
+            Stage { name: "target-budget", run: board::budget::check },
             Stage { name: "tests", run: host::tests::run },
         ])
     }

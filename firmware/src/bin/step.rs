@@ -33,13 +33,13 @@ mod target {
         }
     }
 
-    /// Named in the image and in `xtask/src/target/gates.rs`.
+    /// Named in the image and in `xtask/src/board/gates.rs`.
     #[unsafe(no_mangle)]
     extern "C" fn step_f32(law: &Law<f32>, state: &mut State<f32>, input: &Input<f32>, output: &mut Output<f32>) {
         step(law, state, input, output);
     }
 
-    /// Named in the image and in `xtask/src/target/gates.rs`.
+    /// Named in the image and in `xtask/src/board/gates.rs`.
     #[unsafe(no_mangle)]
     extern "C" fn step_fixed(
         law: &Law<Fixed>,

@@ -1,0 +1,127 @@
+//! Task `cost`: what a step takes on a board: instructions, flash, state, stack.
+
+use super::boards::{self, Board};
+use super::{emulator, gates, image};
+use crate::elf::{self, Image, Reach};
+use anyhow::{Context, Result, bail};
+use serde_json::json;
+use std::collections::BTreeMap;
+
+/// Instructions of a run of steps.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Count {
+    pub(crate) steps: u64,
+    pub(crate) min: u64,
+    pub(crate) mean: f64,
+    pub(crate) max: u64,
+}
+
+/// What the step takes in one number system.
+#[derive(Debug, Default)]
+pub(crate) struct Cost {
+    /// By the name of the profile; steps with a stop event by `NAME, stop events`.
+    pub(crate) instructions: BTreeMap<String, Count>,
+    pub(crate) state_bytes: u64,
+    pub(crate) law_bytes: u64,
+    /// Code that the step reaches, with the constants among it.
+    pub(crate) code_bytes: u32,
+    /// Constants in sections of their own, of both number systems together.
+    pub(crate) constant_bytes: u32,
+    pub(crate) static_ram_bytes: u32,
+    pub(crate) stack_bytes: u32,
+    /// The calls that take the most stack.
+    pub(crate) deepest: String,
+    /// Functions of the run-time library that the step calls.
+    pub(crate) library: Vec<String>,
+}
+
+/// Costs on `board`, by number system.
+pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
+    let mut costs = BTreeMap::new();
+    let step = Image::read(&image::step(board, None).or_else(|_| image::step(board, Some("panic-allowed")))?)?;
+    let functions = elf::functions(&step)?;
+    for (number, root) in gates::ROOTS {
+        let reach = Reach::from(&functions, root)?;
+        let names = reach.functions.iter().flat_map(|(function, _)| &function.names);
+        costs.insert(
+            number,
+            Cost {
+                code_bytes: reach.code_bytes(),
+                constant_bytes: step.section_bytes(".rodata"),
+                static_ram_bytes: step.section_bytes(".data") + step.section_bytes(".bss"),
+                stack_bytes: reach.stack_bytes,
+                library: names.filter(|name| name.starts_with("__")).cloned().collect(),
+                deepest: reach.deepest,
+                ..Cost::default()
+            },
+        );
+    }
+    let output = emulator::run(board, &image::of(board, "cost")?)?;
+    for line in output.lines() {
+        read_line(line, &mut costs).with_context(|| format!("from {}: `{line}`", board.name))?;
+    }
+    Ok(costs)
+}
+
+/// `cost PROFILE NUMBER STEPS MIN MEAN_MILLI MAX`, `cost-events` the same, `size NUMBER STATE LAW`.
+fn read_line(line: &str, costs: &mut BTreeMap<&'static str, Cost>) -> Result<()> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match words.as_slice() {
+        ["size", number, state, law] => {
+            let cost = costs.get_mut(*number).context("an unknown number system")?;
+            (cost.state_bytes, cost.law_bytes) = (state.parse()?, law.parse()?);
+        }
+        [kind @ ("cost" | "cost-events"), profile, number, steps, min, mean_milli, max] => {
+            let name = if *kind == "cost" { (*profile).to_owned() } else { format!("{profile}, stop events") };
+            let mean = mean_milli.parse::<f64>()? / 1000.0;
+            let count = Count { steps: steps.parse()?, min: min.parse()?, mean, max: max.parse()? };
+            costs.get_mut(*number).context("an unknown number system")?.instructions.insert(name, count);
+        }
+        _ => bail!("not a line of costs"),
+    }
+    Ok(())
+}
+
+pub(crate) fn print(board: &str, as_json: bool) -> Result<()> {
+    let board = boards::by_name(board)?;
+    let costs = measure(&board)?;
+    if as_json {
+        println!("{}", to_json(&board, &costs)?);
+    } else {
+        print!("{}", super::budget::text(&board, &costs)?);
+    }
+    Ok(())
+}
+
+/// `flash_bytes`, `state_bytes` and `stack_bytes` are those of f32; each number system has its own beside its counts.
+fn to_json(board: &Board, costs: &BTreeMap<&str, Cost>) -> Result<serde_json::Value> {
+    let mut instructions = serde_json::Map::new();
+    for (number, cost) in costs {
+        let row = |count: &Count| json!({"min": count.min, "mean": count.mean, "max": count.max});
+        let mut rows = serde_json::Map::new();
+        for (profile, count) in &cost.instructions {
+            let name = if profile == "flight" { "step".to_owned() } else { profile.replace([',', ' ', '-'], "_") };
+            rows.insert(name.replace("__", "_"), row(count));
+        }
+        instructions.insert((*number).to_owned(), rows.into());
+    }
+    let f32 = costs.get("f32").context("no costs of f32")?;
+    let sizes: serde_json::Map<_, _> = costs
+        .iter()
+        .map(|(number, cost)| {
+            let sizes = json!({
+                "flash_bytes": cost.code_bytes + cost.constant_bytes, "state_bytes": cost.state_bytes,
+                "law_bytes": cost.law_bytes, "stack_bytes": cost.stack_bytes,
+                "static_ram_bytes": cost.static_ram_bytes,
+            });
+            ((*number).to_owned(), sizes)
+        })
+        .collect();
+    Ok(json!({
+        "target": board.target, "board": board.name, "core": board.core,
+        "instructions": instructions, "sizes": sizes,
+        "flash_bytes": f32.code_bytes + f32.constant_bytes,
+        "state_bytes": f32.state_bytes,
+        "stack_bytes": f32.stack_bytes,
+    }))
+}

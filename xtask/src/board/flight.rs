@@ -1,0 +1,48 @@
+//! Stage `target-flight`: a minute of flight at 1 kHz on every board with interrupts, all outputs equal to the host's, no
+//! deadline missed; and with a tick that is made too long, the misses are counted and the watchdog bites.
+
+use super::boards::{self, Board};
+use super::{emulator, image};
+use crate::shell::{capture, cargo};
+use crate::stages::Note;
+use anyhow::{Context, Result, ensure};
+
+pub(crate) fn check() -> Result<Note> {
+    let expected = capture(&mut cargo("run --quiet --release --package gimbal-firmware --bin flight"))?;
+    let mut flown = 0;
+    for board in &boards::all()? {
+        let Some(shift) = board.emulator.flight_shift else { continue };
+        let (output, success) = emulator::run_to_end(board, &image::of(board, "flight")?, shift)?;
+        ensure!(success, "{}:\n{output}", board.name);
+        let digest = output.lines().next().unwrap_or_default();
+        ensure!(expected.lines().any(|line| line == digest), "{}: {digest}\nhost:\n{expected}", board.name);
+        println!("{:<12} {}", board.name, output.trim_end().replace('\n', "; "));
+        flown += 1;
+    }
+    let board = boards::by_name(boards::DEFAULT)?;
+    overload_is_counted(&board)?;
+    watchdog_bites(&board)?;
+    Ok(format!("a minute on {flown} boards; overload counted, watchdog bites"))
+}
+
+/// Ten ticks of one period and a half: ten misses, reported, and nothing hidden by the steps that follow in time.
+fn overload_is_counted(board: &Board) -> Result<()> {
+    let (output, success) = fly(board, "overload")?;
+    ensure!(!success && output.contains("deadlines missed 10,"), "an overload of ten ticks gives:\n{output}");
+    println!("{:<12} overload: {}", board.name, output.lines().nth(2).unwrap_or_default());
+    Ok(())
+}
+
+/// Every tick too long: the idle loop may never run again, and the watchdog is what ends it.
+fn watchdog_bites(board: &Board) -> Result<()> {
+    board.watchdog.as_ref().context("the default board has a watchdog")?;
+    let (output, success) = fly(board, "hang")?;
+    ensure!(!success && output.contains("watchdog: not fed"), "a tick that is always too long gives:\n{output}");
+    println!("{:<12} hang: {}", board.name, output.trim_end());
+    Ok(())
+}
+
+fn fly(board: &Board, feature: &str) -> Result<(String, bool)> {
+    let shift = board.emulator.flight_shift.context("the default board flies")?;
+    emulator::run_to_end(board, &image::flight_with(board, feature)?, shift)
+}

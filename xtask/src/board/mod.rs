@@ -1,0 +1,20 @@
+//! Checks on the microcontrollers, all under QEMU.
+
+pub(crate) mod addresses;
+mod boards;
+pub(crate) mod budget;
+pub(crate) mod calibration;
+pub(crate) mod cost;
+pub(crate) mod digests;
+mod emulator;
+pub(crate) mod flight;
+pub(crate) mod gates;
+mod image;
+pub(crate) mod lints;
+mod packages;
+pub(crate) mod profile;
+pub(crate) mod setup;
+pub(crate) mod stack;
+mod toolchain;
+
+pub(crate) use boards::DEFAULT as DEFAULT_BOARD;
