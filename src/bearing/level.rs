@@ -54,9 +54,12 @@ impl<N: Number> Law<N> {
         let largest_static = fa * most_axial + fr * most_radial;
         let largest_load = (ta * most_axial).max(most_radial);
 
-        // Twice: the full scale of the acceleration may be twice its largest.
-        let static_scale = N::exponent(2.0 * largest_static);
-        let load_scale = N::exponent(2.0 * largest_load);
+        // Each term has room for the full scale of the acceleration, which may be far above the axial one's range.
+        let accel = [units.accel; 2];
+        let scale =
+            |largest: f64, factors: [f64; 2]| N::exponent(2.0 * largest).max(Row::<N, 2>::exponent(factors, accel));
+        let static_scale = scale(largest_static, [fa * share, fr * share]);
+        let load_scale = scale(largest_load, [ta * share, share.max(tr * share)]);
         let power = |load: f64| count * bearing.load_torque_nm_per_n * libm::pow(load, bearing.load_exponent);
         let smallest_static = fa * preload;
         let steepest = bearing.load_exponent * power(smallest_static) / smallest_static;
@@ -65,7 +68,6 @@ impl<N: Number> Law<N> {
 
         let viscous = |rate: f64| count * bearing.viscous_torque_nm(rate);
         let viscous_break = bearing.viscous_break_radps();
-        let accel = [units.accel; 2];
         let tables = Tables {
             sqrt: SqrtTable::build(),
             power: PowerTable::build(largest_static, static_scale, power_scale, power),
