@@ -195,7 +195,8 @@ impl Number for Fixed {
     #[inline(always)]
     fn hypot(self, other: Self, table: &SqrtTable<Self>) -> Self {
         let square = i64::from(self.0) * i64::from(self.0) + i64::from(other.0) * i64::from(other.0);
-        let top = (square >> 31) as i32;
+        // Two components near the full scale have a root beyond it, which is then the full scale.
+        let top = (square >> 31).min(i64::from(LARGEST)) as i32;
         let positive = top.max(1) as u32;
         // An even shift that brings the leading one to bit 29 or 30.
         let shift = (positive.leading_zeros() - 1) & !1;
