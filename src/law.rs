@@ -27,6 +27,8 @@ pub struct Law<N: Number> {
     pub(crate) friction: friction::Law<N>,
     pub(crate) free: free::Law<N>,
     pub(crate) small_angle: N,
+    /// 1 rad, beyond which phi does not go.
+    pub(crate) largest_angle: N,
     /// A torque of no effect that keeps decayed modes out of subnormal numbers, on which many processors are slow.
     pub(crate) stir: N,
     /// phi' to the full scale of rates.
@@ -79,6 +81,7 @@ impl Config {
             largest_drift_torque: N::quantise(range.torque_nm, units.torque),
             stir: N::quantise(1e-25, units.torque),
             small_angle: N::quantise(0.1, units.gimbal_angle),
+            largest_angle: N::quantise(1.0, units.gimbal_angle),
             identity: self.identity(N::TAG),
             units,
         })

@@ -159,7 +159,7 @@ impl<N: Number> Law<N> {
         let mut gimbal_angle = N::narrow(moved.gimbal_angle);
         if !gimbal_angle.within(self.small_angle) {
             let beyond;
-            (gimbal_angle, beyond) = confine_angle(moved.gimbal_angle);
+            (gimbal_angle, beyond) = self.confine_angle(moved.gimbal_angle);
             faults |= beyond;
         }
         let gimbal_rate = moved.sensed_rate - now.drift;
@@ -189,11 +189,12 @@ impl<N: Number> Law<N> {
             faults,
         }
     }
-}
 
-/// phi beyond the small angles: flagged, and kept within +-1 rad.
-#[cold]
-fn confine_angle<N: Number>(wide: N::Wide) -> (N, Faults) {
-    let full = Faults::ARITHMETIC_SATURATED.when(N::is_full(wide));
-    (N::narrow(wide).least(N::ONE).most(-N::ONE), Faults::SMALL_ANGLE_EXCEEDED | full)
+    /// phi beyond the small angles: flagged, and kept within +-1 rad.
+    #[cold]
+    fn confine_angle(&self, wide: N::Wide) -> (N, Faults) {
+        let (angle, limit) = (N::narrow(wide), self.largest_angle);
+        let full = Faults::ARITHMETIC_SATURATED.when(N::is_full(wide) || !angle.within(limit));
+        (angle.least(limit).most(-limit), Faults::SMALL_ANGLE_EXCEEDED | full)
+    }
 }
