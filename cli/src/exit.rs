@@ -71,7 +71,7 @@ pub(crate) fn code(result: Result<(), Failure>) -> ExitCode {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Input(error)) => (error.to_string(), 2),
         Err(Failure::Environment(error)) => (error.to_string(), 3),
-        Err(Failure::Interrupted) => ("interrupted; nothing was written".to_owned(), 130),
+        Err(Failure::Interrupted) => ("interrupted; no file is half-written".to_owned(), 130),
     };
     eprintln!("error: {}", message.lines().collect::<Vec<_>>().join("; "));
     ExitCode::from(status)

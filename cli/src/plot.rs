@@ -18,7 +18,7 @@ const LEFT: u32 = 84;
 const RIGHT: u32 = 24;
 /// Room for the name, the unit and the legend above a panel.
 const CAPTION_HEIGHT: i32 = 26;
-/// Lines longer than this are drawn without dashes [pixels].
+/// Lines longer than this are drawn without dashes, in pixels.
 const MOST_DASHED_PX: f64 = 20_000.0;
 const FONT: &str = "sans-serif";
 const INK: RGBColor = RGBColor(34, 34, 34);
@@ -199,7 +199,7 @@ impl Figure<'_> {
     }
 }
 
-/// Length of a line on paper, up and down [pixels].
+/// Length of a line on paper, up and down, in pixels.
 fn path_px(points: &[(f64, f64)], range: f64) -> f64 {
     let ways = points.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs());
     ways.sum::<f64>() / range * f64::from(PANEL_HEIGHT)
