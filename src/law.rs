@@ -42,8 +42,8 @@ pub struct Law<N: Number> {
     pub(crate) drift_torque: ScaledRow<N, 1>,
     /// phi lost over a period to a drift of 1.
     pub(crate) drift_angle: ScaledRow<N, 1>,
-    /// theta's full scale times the rates', over that of phi'.
-    pub(crate) drift_scale: ScaledRow<N, 1>,
+    /// theta's full scale times the rates', to that of phi'.
+    pub(crate) drift_shift: u32,
     pub(crate) largest_drift_torque: N,
     pub(crate) units: Units,
     pub(crate) identity: u32,
@@ -77,7 +77,7 @@ impl Config {
             motor_shift: (units.motor_torque - units.torque).unsigned_abs(),
             drift_torque: ScaledRow::build([plant.gimbal_inertia / period], [units.gimbal_rate], units.torque),
             drift_angle: ScaledRow::build([-0.5 * period], [units.gimbal_rate], units.gimbal_angle),
-            drift_scale: ScaledRow::build([1.0], [units.gyro_angle + units.rate], units.gimbal_rate),
+            drift_shift: (units.gyro_angle + units.rate - units.gimbal_rate).max(0).unsigned_abs(),
             largest_drift_torque: N::quantise(range.torque_nm, units.torque),
             stir: N::quantise(1e-25, units.torque),
             small_angle: N::quantise(0.1, units.gimbal_angle),

@@ -66,6 +66,8 @@ pub trait Number:
     fn low(wide: Self::Wide) -> Self::Wide;
     /// The signal as a sum.
     fn widen(self) -> Self::Wide;
+    /// Product with all its bits; its full scale is the product of the two full scales.
+    fn product(self, other: Self) -> Self::Wide;
     /// Product; its full scale is the product of the two full scales.
     #[must_use]
     fn times(self, other: Self) -> Self;

@@ -99,7 +99,7 @@ impl<N: Number> Law<N> {
 
     /// `theta w_x`.
     fn drift(&self, state: &State<N>, row: &Input<N>) -> N {
-        self.drift_scale.at(&[state.gyro_angle.times(row.spin_rate_radps)])
+        N::narrow_shifted(state.gyro_angle.product(row.spin_rate_radps), self.drift_shift)
     }
 
     #[inline(always)]

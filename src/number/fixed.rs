@@ -153,9 +153,14 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
+    fn product(self, other: Self) -> Wide {
+        Wide(i64::from(self.0) * i64::from(other.0))
+    }
+
+    #[inline(always)]
     fn times(self, other: Self) -> Self {
         // -1 does not exist: the product is a fraction.
-        Self(((i64::from(self.0) * i64::from(other.0)) >> 31) as i32)
+        Self::head(self.product(other))
     }
 
     #[inline(always)]

@@ -65,6 +65,11 @@ impl Number for f32 {
     }
 
     #[inline(always)]
+    fn product(self, other: f32) -> f32 {
+        self * other
+    }
+
+    #[inline(always)]
     fn times(self, other: f32) -> f32 {
         self * other
     }
