@@ -32,7 +32,7 @@ type Style = (RGBColor, u32, Option<(i32, i32)>);
 const STYLES: [Style; 3] = [
     (RGBColor(0, 82, 136), 2, None),
     (RGBColor(222, 128, 0), 2, Some((8, 4))),
-    (RGBColor(90, 150, 110), 2, Some((2, 4))),
+    (RGBColor(120, 190, 150), 2, Some((2, 4))),
 ];
 
 /// One line.

@@ -21,7 +21,7 @@ use crate::exit::Failure;
 use crate::report;
 use drive::{Files, Finished};
 use flight::Flight;
-use model::{Kind, Model};
+use model::{Initial, Kind, Model};
 use profile::Profile;
 use reference::Reference;
 use source::{Mended, Source};
@@ -48,6 +48,9 @@ pub(crate) struct Options {
     /// Run the reference plant instead of the flight law
     #[arg(long, conflicts_with = "number")]
     plant: bool,
+    /// State before the first row
+    #[arg(long, value_enum, default_value_t = Initial::Zero)]
+    initial: Initial,
     /// 10 s of a torque on the gimbal, ended after `T_OFF_S`, instead of a log; no friction, no unbalance
     #[arg(long, value_name = "T[,T_OFF_S]", value_parser = Profile::torque, allow_hyphen_values = true)]
     disturbance_nm: Option<Profile>,
@@ -132,7 +135,7 @@ fn run_profile(
     let config = model::held(profile.config(&model.config));
     let mut files = Files::create(options, suffix, None)?;
     let finished =
-        with_model(options.kind(), &config, model, |runs| drive::profile(runs, profile, config.period_s, &mut files))?;
+        with_model(options, &config, model, |runs| drive::profile(runs, profile, config.period_s, &mut files))?;
     let title = profile.description();
     let notes = files.commit(&title)?;
     Ok(summary(title, options.kind(), finished, notes))
@@ -143,7 +146,7 @@ fn run_log(path: &Path, model: &ModelFile, options: &Options) -> Result<Summary,
     let config = Config { period_s: source.period_s, ..model.config };
     let mut notes = source.remarks.clone();
     let mut files = Files::create(options, None, Some(&source))?;
-    let finished = with_model(options.kind(), &config, model, |runs| drive::log(runs, &source, &mut files))?;
+    let finished = with_model(options, &config, model, |runs| drive::log(runs, &source, &mut files))?;
     notes.extend(told(&source.finish()));
     let title = path.display().to_string();
     notes.extend(files.commit(&title)?);
@@ -152,16 +155,17 @@ fn run_log(path: &Path, model: &ModelFile, options: &Options) -> Result<Summary,
 
 /// Builds what is to run, and hands it over.
 fn with_model(
-    kind: Kind,
+    options: &Options,
     config: &Config,
     file: &ModelFile,
     run: impl FnOnce(&mut dyn Model) -> Result<Finished, Failure>,
 ) -> Result<Finished, Failure> {
     let refused = |error: BuildError| Failure::Input(file.locate(&error).into());
-    match kind {
-        Kind::Float => run(&mut Flight::<f32>::new(config).map_err(refused)?),
-        Kind::Fixed => run(&mut Flight::<Fixed>::new(config).map_err(refused)?),
-        Kind::Plant => run(&mut Reference::new(config).map_err(refused)?),
+    let initial = options.initial;
+    match options.kind() {
+        Kind::Float => run(&mut Flight::<f32>::new(config, initial).map_err(refused)?),
+        Kind::Fixed => run(&mut Flight::<Fixed>::new(config, initial).map_err(refused)?),
+        Kind::Plant => run(&mut Reference::new(config, initial).map_err(refused)?),
     }
 }
 

@@ -2,6 +2,8 @@
 
 mod program;
 
+use std::fmt::Write;
+
 use program::{Bench, number, swaying};
 
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
@@ -58,6 +60,24 @@ fn cross_flight_law_agrees_with_the_reference_plant_on_a_log() {
         // The law takes the mean over a period, the plant the line: they differ by (w T)^2 / 12, 2 % at the loop's
         // 500 rad/s, of the fast part of a reversal, which is below a twentieth of the peak.
         assert!((law - plant).abs() < 1e-3 * plant.abs(), "{key}: {law} against {plant}");
+    }
+}
+
+#[test]
+fn closed_form_a_settled_start_moves_nothing_under_a_steady_load() {
+    let bench = Bench::new();
+    let mut log = format!("{}\n", program::HEADER);
+    for k in 0..1000 {
+        let _ = writeln!(log, "{},0,50,9.8,0.1", f64::from(k) / 1000.0);
+    }
+    bench.write("log.csv", log);
+    for system in [&["--number", "f32"][..], &["--number", "fixed"], &["--plant"]] {
+        let peak_rad = |initial: &str| {
+            let run = bench.json(&[&["run", "log.csv", "--json", "--initial", initial], system].concat());
+            number(&run, "peak_gimbal_angle_rad")
+        };
+        // The motor carries the load from the start; what is left is rounding, of f32 at the most.
+        assert!(peak_rad("settled") < 1e-6 * peak_rad("zero"), "{system:?}");
     }
 }
 

@@ -2,12 +2,13 @@
 
 use gimbal_servo::{BuildError, Config, Digest, Faults, Input, Law, Number, Output, State, Stop};
 
-use super::model::{Model, Sample, Totals, share_on_stop};
+use super::model::{Initial, Model, Sample, Totals, share_on_stop};
 
 /// The law in one number system.
 pub(crate) struct Flight<N: Number> {
     law: Law<N>,
     state: State<N>,
+    initial: Initial,
     output: Option<Output<N>>,
     digest: Digest,
     period_s: f64,
@@ -19,12 +20,13 @@ pub(crate) struct Flight<N: Number> {
 }
 
 impl<N: Number> Flight<N> {
-    /// At rest, before the first row.
-    pub(crate) fn new(config: &Config) -> Result<Self, BuildError> {
+    /// Before the first row.
+    pub(crate) fn new(config: &Config, initial: Initial) -> Result<Self, BuildError> {
         let law: Law<N> = config.build()?;
         Ok(Self {
             state: law.start(),
             law,
+            initial,
             output: None,
             digest: Digest::default(),
             period_s: config.period_s,
@@ -40,7 +42,11 @@ impl<N: Number> Flight<N> {
 impl<N: Number> Model for Flight<N> {
     #[inline]
     fn step(&mut self, row: &Input<f64>) {
-        let output = self.law.step(&mut self.state, self.law.units().input(row));
+        let input = self.law.units().input(row);
+        if self.samples == 0 && self.initial == Initial::Settled {
+            self.state = self.law.settled(input);
+        }
+        let output = self.law.step(&mut self.state, input);
         self.digest.add_output(&output);
         self.samples += 1;
         self.faults |= output.faults;

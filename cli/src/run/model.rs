@@ -53,6 +53,15 @@ pub(crate) struct Totals {
     pub(crate) digest: u64,
 }
 
+/// Where a run begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Initial {
+    /// Everything zero.
+    Zero,
+    /// Steady under the first row: theta zero, the motor carrying the disturbance.
+    Settled,
+}
+
 /// What is to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {

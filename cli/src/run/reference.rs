@@ -3,7 +3,7 @@
 use gimbal_plant::{Plant, Row, State, Stop, StopEvent, StopEventKind};
 use gimbal_servo::{BuildError, Config, Digest, Faults, Input};
 
-use super::model::{Model, Sample, Totals};
+use super::model::{Initial, Model, Sample, Totals};
 
 /// phi beyond which the linear equations no longer hold [rad].
 const SMALL_ANGLE_RAD: f64 = 0.1;
@@ -13,6 +13,7 @@ pub(crate) struct Reference {
     config: Config,
     plant: Plant,
     state: State,
+    initial: Initial,
     row: Option<Row>,
     sample: Option<gimbal_plant::Sample>,
     totals: Totals,
@@ -20,8 +21,8 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// At rest, before the first row.
-    pub(crate) fn new(config: &Config) -> Result<Self, BuildError> {
+    /// Before the first row.
+    pub(crate) fn new(config: &Config, initial: Initial) -> Result<Self, BuildError> {
         let plant = Plant::new(config)?;
         let totals = Totals {
             samples: 0,
@@ -34,7 +35,7 @@ impl Reference {
         };
         let state = plant.start();
         let digest = Digest::default();
-        Ok(Self { config: *config, state, plant, row: None, sample: None, totals, digest })
+        Ok(Self { config: *config, state, initial, plant, row: None, sample: None, totals, digest })
     }
 
     /// phi less what the gyro has seen of it, which is the integral of (2): `(Jo theta' + Bo theta) / H`.
@@ -57,9 +58,13 @@ impl Model for Reference {
             spin_rate_radps: input.spin_rate_radps,
             torque_nm: input.torque_nm,
         };
-        let sample = match &self.row {
-            Some(previous) => self.plant.step(&mut self.state, previous, &row),
-            None => self.plant.sample(&self.state, &row),
+        let sample = if let Some(previous) = &self.row {
+            self.plant.step(&mut self.state, previous, &row)
+        } else {
+            if self.initial == Initial::Settled {
+                self.state = self.plant.settled(&row);
+            }
+            self.plant.sample(&self.state, &row)
         };
         self.row = Some(row);
         let totals = &mut self.totals;
