@@ -1,3 +1,6 @@
 //! The gap between a model and a log: where it lies, which effect causes it, how far it shrinks.
 
 #![forbid(unsafe_code)]
+
+pub mod library;
+pub mod simulate;

@@ -1,0 +1,85 @@
+//! What drives a prediction: the logged inputs, and what follows from them once for all predictions.
+
+use gimbal_servo::bearing;
+
+use super::bearing::load_nm;
+
+/// Inputs at every row; missing samples filled in.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    /// Time between two rows [s].
+    pub period_s: f64,
+    /// Time of the first row since the run began, as far as the log tells [s].
+    pub start_s: f64,
+    /// Specific force along x, y, z [m/s2].
+    pub accel_mps2: [Vec<f64>; 3],
+    /// Vehicle rate about the gimbal axis [rad/s].
+    pub rate_radps: Vec<f64>,
+    /// Vehicle rate about x [rad/s]; empty when not logged.
+    pub cross_radps: Vec<f64>,
+    /// rel less phi: the integral of the vehicle rate, beginning where `relative_angle_rad` does [rad].
+    pub turned_rad: Vec<f64>,
+    /// `T_load` under the nominal bearing [N m].
+    pub load_nm: Vec<f64>,
+}
+
+impl Inputs {
+    /// Fills in what follows from the columns.
+    pub fn complete(&mut self, bearing: &bearing::Config, begin_rad: f64) {
+        let [x, y, z] = &self.accel_mps2;
+        self.load_nm = (0..x.len()).map(|k| load_nm(bearing, [x[k], y[k], z[k]])).collect();
+        let mut turned = begin_rad;
+        let mut last = self.rate_radps.first().copied().unwrap_or(0.0);
+        self.turned_rad = self
+            .rate_radps
+            .iter()
+            .map(|&rate| {
+                turned += 0.5 * self.period_s * (rate + last);
+                last = rate;
+                turned
+            })
+            .collect();
+        if let Some(first) = self.turned_rad.first_mut() {
+            *first = begin_rad;
+        }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rate_radps.len()
+    }
+
+    /// Whether there is no row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rate_radps.is_empty()
+    }
+
+    /// The inputs as they were: the log has them late by `skew_s`.
+    #[must_use]
+    pub fn advanced(&self, skew_s: f64, bearing: &bearing::Config) -> Self {
+        let shift = skew_s / self.period_s;
+        let moved = |values: &Vec<f64>| -> Vec<f64> { (0..values.len()).map(|k| at(values, k, shift)).collect() };
+        let mut inputs = Self {
+            period_s: self.period_s,
+            start_s: self.start_s,
+            accel_mps2: [0, 1, 2].map(|axis| moved(&self.accel_mps2[axis])),
+            rate_radps: moved(&self.rate_radps),
+            cross_radps: moved(&self.cross_radps),
+            ..Self::default()
+        };
+        inputs.complete(bearing, self.turned_rad.first().copied().unwrap_or(0.0));
+        inputs
+    }
+}
+
+/// The value `shift` rows after row k, on the line between two rows.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "a row")]
+fn at(values: &[f64], k: usize, shift: f64) -> f64 {
+    let place = (k as f64 + shift).clamp(0.0, values.len() as f64 - 1.0);
+    let low = (place.floor() as usize).min(values.len().saturating_sub(2));
+    let share = place - low as f64;
+    let next = values.get(low + 1).copied().unwrap_or(values[low]);
+    values[low] + share * (next - values[low])
+}

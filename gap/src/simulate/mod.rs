@@ -1,0 +1,16 @@
+//! The platform predicted at every row, fast: fixed steps, exact between them for everything that is linear.
+//!
+//! A third solution of the same equations, beside the flight code and the reference plant. It is made for being run
+//! a hundred times over a log: one full step a row while the bearing slips, a few where friction turns around or the
+//! float is on a stop. A test holds it against the plant.
+
+mod bearing;
+mod chain;
+mod discrete;
+mod inputs;
+mod physics;
+mod run;
+
+pub use inputs::Inputs;
+pub use physics::{Friction, Hysteresis, Measurement, Physics, Ripple};
+pub use run::{Begin, Prediction, predict};

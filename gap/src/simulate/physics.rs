@@ -1,0 +1,126 @@
+//! What the platform is made of: the nominal parameters and every effect's, in one value.
+
+use gimbal_servo::Config;
+
+/// Everything that a prediction depends on beside the inputs and the beginning.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Physics {
+    /// Nominal parameters, shifted where an effect shifts them.
+    pub config: Config,
+    /// Bearings beyond the nominal law.
+    pub friction: Friction,
+    /// Torque on the gimbal, constant [N m].
+    pub constant_nm: f64,
+    /// `k a_x a_y` [N m s4/m2].
+    pub anisoelasticity: f64,
+    /// `k rate cross_rate` [kg m2].
+    pub cross_axis_kg_m2: f64,
+    /// Leak of `a_z` into `T_u`, from a tilted accelerometer [kg m].
+    pub axial_leak_kg_m: f64,
+    /// Spring of the cable [N m/rad].
+    pub spring_nm_per_rad: f64,
+    /// Bouc-Wen loop of the cable.
+    pub hysteresis: Option<Hysteresis>,
+    /// Ripple in rel.
+    pub ripple: Option<Ripple>,
+    /// Pure delay of the motor torque [s].
+    pub delay_s: f64,
+    /// Clamp of the motor torque [N m].
+    pub limit_nm: Option<f64>,
+    /// Subtractive dead zone of the motor [N m].
+    pub dead_zone_nm: f64,
+    /// Step of the pick-off in the loop [rad].
+    pub quantum_rad: f64,
+    /// Constant torque on the float [N m].
+    pub float_nm: f64,
+    /// Torque on the float per `a_x` [kg m].
+    pub float_kg_m: f64,
+    /// Appendage: share of the inertia, frequency [Hz], damping ratio.
+    pub appendage: Option<[f64; 3]>,
+    /// Sensors.
+    pub measurement: Measurement,
+}
+
+/// Changes of the friction law.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Friction {
+    /// `T_load (1 + s)`.
+    pub level: f64,
+    /// `T_visc (1 + s)`.
+    pub viscous_level: f64,
+    /// `T_load (1 + k A_r / g)`.
+    pub per_g: f64,
+    /// `T_f (1 + a sgn w)`.
+    pub asymmetry: f64,
+    /// `b w` [N m s/rad].
+    pub viscous_nm_s: f64,
+    /// `b w |w|` [N m s2/rad2].
+    pub quadratic_nm_s2: f64,
+    /// Excess at rest [N m] and its rate [rad/s].
+    pub stribeck: Option<[f64; 2]>,
+    /// Displacement over which friction builds up [rad].
+    pub presliding_rad: f64,
+    /// Ratio and time constant [s].
+    pub drift: Option<[f64; 2]>,
+}
+
+/// Loop of the cable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hysteresis {
+    /// Torque at the ends [N m].
+    pub torque_nm: f64,
+    /// Displacement of the initial stiffness [rad].
+    pub displacement_rad: f64,
+}
+
+/// `s sin(n rel) + c cos(n rel)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ripple {
+    /// s [N m].
+    pub sine_nm: f64,
+    /// c [N m].
+    pub cosine_nm: f64,
+    /// n [1].
+    pub cycles: f64,
+}
+
+/// Sensors that only write the log.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Measurement {
+    /// Relative.
+    pub pickoff_scale: f64,
+    /// [rad].
+    pub pickoff_bias_rad: f64,
+    /// Relative.
+    pub torque_scale: f64,
+    /// [N m].
+    pub torque_bias_nm: f64,
+    /// Inputs logged late by this [s].
+    pub skew_s: f64,
+}
+
+impl Physics {
+    /// The nominal platform.
+    #[must_use]
+    pub fn nominal(config: &Config) -> Self {
+        Self {
+            config: *config,
+            friction: Friction::default(),
+            constant_nm: 0.0,
+            anisoelasticity: 0.0,
+            cross_axis_kg_m2: 0.0,
+            axial_leak_kg_m: 0.0,
+            spring_nm_per_rad: 0.0,
+            hysteresis: None,
+            ripple: None,
+            delay_s: 0.0,
+            limit_nm: None,
+            dead_zone_nm: 0.0,
+            quantum_rad: 0.0,
+            float_nm: 0.0,
+            float_kg_m: 0.0,
+            appendage: None,
+            measurement: Measurement::default(),
+        }
+    }
+}

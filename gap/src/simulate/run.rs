@@ -1,0 +1,431 @@
+//! Row by row through the inputs.
+
+use super::bearing::Viscous;
+use super::chain::{Chain, FULL, INPUTS, PHI, PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
+use super::discrete::{Step, add};
+use super::{Inputs, Physics};
+
+const GRAVITY_MPS2: f64 = 9.806_65;
+/// Longest full step [s].
+const LONGEST_STEP_S: f64 = 1.2e-3;
+/// Short steps in a full one.
+const SHORT: u32 = 4;
+
+/// Where a prediction begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Begin {
+    /// phi', theta, theta', four sections, integrator, motor torque, phi.
+    pub state: [f64; PLAIN],
+    /// Share of the cable's loop.
+    pub hysteresis: f64,
+}
+
+/// What the sensors would read, and what they do not see.
+#[derive(Debug, Clone, Default)]
+pub struct Prediction {
+    /// Pick-off angle as logged [rad].
+    pub gyro_angle_rad: Vec<f64>,
+    /// Motor torque as logged [N m].
+    pub motor_torque_nm: Vec<f64>,
+    /// phi [rad].
+    pub gimbal_angle_rad: Vec<f64>,
+    /// phi' [rad/s].
+    pub gimbal_rate_radps: Vec<f64>,
+    /// Bearing friction [N m].
+    pub friction_nm: Vec<f64>,
+    /// Rows on a stop.
+    pub on_stop: Vec<bool>,
+}
+
+impl Begin {
+    /// At rest under the first row, with the pick-off angle and motor torque that the log begins with.
+    #[must_use]
+    pub fn at(physics: &Physics, inputs: &Inputs, theta_rad: f64, torque_nm: Option<f64>) -> Self {
+        let mut state = [0.0; PLAIN];
+        let rate = inputs.rate_radps[0];
+        let level = inputs.load_nm[0] + Viscous::new(&physics.config.bearing).torque_nm(rate.abs());
+        let unbalance = &physics.config.unbalance;
+        let disturbance = level * (rate / physics.config.bearing.slip_rate_radps).clamp(-1.0, 1.0)
+            + unbalance.torque_nm(inputs.accel_mps2[0][0], inputs.accel_mps2[1][0]);
+        state[THETA] = theta_rad;
+        state[super::chain::INTEGRATOR] = torque_nm.unwrap_or(disturbance);
+        state[TORQUE] = torque_nm.unwrap_or(disturbance);
+        Self { state, hysteresis: 0.0 }
+    }
+}
+
+/// Runs the physics over the inputs.
+#[must_use]
+pub fn predict(physics: &Physics, inputs: &Inputs, begin: &Begin, rows: usize) -> Prediction {
+    let shifted;
+    let inputs = if physics.measurement.skew_s == 0.0 {
+        inputs
+    } else {
+        shifted = inputs.advanced(physics.measurement.skew_s, &physics.config.bearing);
+        &shifted
+    };
+    let mut prediction = if Chain::states(physics) == PLAIN {
+        Machine::<PLAIN>::new(physics, inputs).run(begin, rows)
+    } else {
+        Machine::<FULL>::new(physics, inputs).run(begin, rows)
+    };
+    let sensors = physics.measurement;
+    for theta in &mut prediction.gyro_angle_rad {
+        *theta = *theta * (1.0 + sensors.pickoff_scale) + sensors.pickoff_bias_rad;
+    }
+    for torque in &mut prediction.motor_torque_nm {
+        *torque = *torque * (1.0 + sensors.torque_scale) + sensors.torque_bias_nm;
+    }
+    prediction
+}
+
+/// The inputs at one instant.
+#[derive(Debug, Clone, Copy, Default)]
+struct Now {
+    accel: [f64; 3],
+    rate: f64,
+    cross: f64,
+    turned: f64,
+    load: f64,
+    time_s: f64,
+}
+
+impl Now {
+    fn toward(&self, next: &Self, share: f64) -> Self {
+        let line = |a: f64, b: f64| a + share * (b - a);
+        Self {
+            accel: std::array::from_fn(|axis| line(self.accel[axis], next.accel[axis])),
+            rate: line(self.rate, next.rate),
+            cross: line(self.cross, next.cross),
+            turned: line(self.turned, next.turned),
+            load: line(self.load, next.load),
+            time_s: line(self.time_s, next.time_s),
+        }
+    }
+}
+
+/// What changes while the machine runs.
+#[derive(Debug, Clone, Copy)]
+struct Running<const N: usize> {
+    x: [f64; N],
+    /// Inputs of the chain at x.
+    u: [f64; INPUTS],
+    /// w at x.
+    w: f64,
+    friction: f64,
+    /// Share of friction built up, with `presliding`.
+    zeta: f64,
+    hysteresis: f64,
+    /// -1, 0, 1.
+    stop: i8,
+}
+
+struct Machine<'a, const N: usize> {
+    physics: &'a Physics,
+    inputs: &'a Inputs,
+    viscous: Viscous,
+    /// Full and short, off and on a stop.
+    free: [Step<N>; 2],
+    held: [Step<N>; 2],
+    full_steps: u32,
+    command: [f64; N],
+}
+
+impl<'a, const N: usize> Machine<'a, N> {
+    fn new(physics: &'a Physics, inputs: &'a Inputs) -> Self {
+        let period_s = inputs.period_s;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few")]
+        let full_steps = (period_s / LONGEST_STEP_S).ceil().max(1.0) as u32;
+        let (off, on) = (Chain::new(physics, false), Chain::new(physics, true));
+        let full_s = period_s / f64::from(full_steps);
+        let steps = |chain: &Chain| [Step::new(chain, full_s), Step::new(chain, full_s / f64::from(SHORT))];
+        let command = std::array::from_fn(|state| off.command[state]);
+        let viscous = Viscous::new(&physics.config.bearing);
+        Self { physics, inputs, viscous, free: steps(&off), held: steps(&on), full_steps, command }
+    }
+
+    fn now(&self, k: usize) -> Now {
+        let inputs = self.inputs;
+        Now {
+            accel: [0, 1, 2].map(|axis| inputs.accel_mps2[axis][k]),
+            rate: inputs.rate_radps[k],
+            cross: inputs.cross_radps.get(k).copied().unwrap_or(0.0),
+            turned: inputs.turned_rad[k],
+            load: inputs.load_nm[k],
+            time_s: inputs.start_s + k as f64 * inputs.period_s,
+        }
+    }
+
+    fn run(&self, begin: &Begin, rows: usize) -> Prediction {
+        let rows = rows.min(self.inputs.len());
+        let mut out = Prediction {
+            gyro_angle_rad: Vec::with_capacity(rows),
+            motor_torque_nm: Vec::with_capacity(rows),
+            gimbal_angle_rad: Vec::with_capacity(rows),
+            gimbal_rate_radps: Vec::with_capacity(rows),
+            friction_nm: Vec::with_capacity(rows),
+            on_stop: Vec::with_capacity(rows),
+        };
+        let mut now = self.now(0);
+        let mut state = self.begin(begin, &now);
+        for k in 0..rows {
+            if k > 0 {
+                let next = self.now(k);
+                self.row(&mut state, &now, &next);
+                now = next;
+            }
+            out.gyro_angle_rad.push(self.seen(state.x[THETA]));
+            out.motor_torque_nm.push(self.motor(self.command_nm(&state.x)));
+            out.gimbal_angle_rad.push(state.x[PHI]);
+            out.gimbal_rate_radps.push(state.x[PHI_RATE]);
+            out.friction_nm.push(state.friction);
+            out.on_stop.push(state.stop != 0);
+        }
+        out
+    }
+
+    fn begin(&self, begin: &Begin, now: &Now) -> Running<N> {
+        let mut x = [0.0; N];
+        x[..PLAIN].copy_from_slice(&begin.state);
+        if N == FULL {
+            x[10] = x[TORQUE];
+        }
+        let w = now.rate - x[PHI_RATE];
+        let slip = self.physics.config.bearing.slip_rate_radps;
+        let zeta = (w / slip).clamp(-1.0, 1.0);
+        let friction = self.level(now, w) * zeta;
+        let u = [friction + self.others(now, &x, begin.hysteresis), self.float_nm(now), self.seen(x[THETA]) - x[THETA]];
+        Running { x, u, w, friction, zeta, hysteresis: begin.hysteresis, stop: 0 }
+    }
+
+    /// One row: full steps where nothing turns around, short ones elsewhere.
+    fn row(&self, state: &mut Running<N>, now: &Now, next: &Now) {
+        let mut from = *now;
+        for part in 1..=self.full_steps {
+            let to = if part == self.full_steps {
+                *next
+            } else {
+                now.toward(next, f64::from(part) / f64::from(self.full_steps))
+            };
+            if self.turns(state, &to) {
+                let mut start = from;
+                for short in 1..=SHORT {
+                    let end = from.toward(&to, f64::from(short) / f64::from(SHORT));
+                    self.step(state, &start, &end, 1);
+                    self.contact(state);
+                    start = end;
+                }
+            } else {
+                self.step(state, &from, &to, 0);
+                self.contact(state);
+            }
+            from = to;
+        }
+    }
+
+    /// Whether friction may turn around before `to`, or the float is near a stop.
+    fn turns(&self, state: &Running<N>, to: &Now) -> bool {
+        let near = 3.0 * self.physics.config.bearing.slip_rate_radps;
+        let ahead = to.rate - state.x[PHI_RATE];
+        let builds_up =
+            self.physics.friction.presliding_rad > 0.0 && (state.zeta - state.w.signum()).abs() > 1e-3;
+        state.w.abs() < near
+            || ahead.abs() < near
+            || ahead * state.w < 0.0
+            || builds_up
+            || state.stop != 0
+            || state.x[THETA].abs() > 0.95 * self.physics.config.gyro.stop_angle_rad
+    }
+
+    fn step(&self, state: &mut Running<N>, from: &Now, to: &Now, short: usize) {
+        let step = if state.stop == 0 { &self.free[short] } else { &self.held[short] };
+        let mut x = step.free(&state.x, &state.u);
+        let mut guess = x;
+        add(&mut guess, &step.end[0], state.u[0]);
+        let ahead = to.rate - guess[PHI_RATE];
+        let turned = 0.5 * self.step_s(short) * (state.w + ahead);
+        let hysteresis = self.hysteresis_after(state.hysteresis, turned);
+        let others = self.others(to, &guess, hysteresis);
+        let float_nm = self.float_nm(to);
+        add(&mut x, &step.end[0], others);
+        if float_nm != 0.0 {
+            add(&mut x, &step.end[1], float_nm);
+        }
+        let mut seen = 0.0;
+        if self.physics.quantum_rad > 0.0 {
+            seen = self.seen(guess[THETA]) - guess[THETA];
+            add(&mut x, &step.end[2], seen);
+        }
+        let brake = step.end[0][PHI_RATE];
+        let rate = to.rate - x[PHI_RATE];
+        let level = self.level(to, ahead);
+        let (friction, mean, zeta) = if self.physics.friction.presliding_rad > 0.0 {
+            self.build_up(state, [rate, brake, level, self.step_s(short)])
+        } else {
+            self.clamp(state, rate, brake, level)
+        };
+        add(&mut x, &step.end[0], friction);
+        if let Some(mean) = mean {
+            add(&mut x, &step.start[0], mean - state.friction);
+            add(&mut x, &step.end[0], mean - friction);
+        }
+        let _ = from;
+        *state = Running {
+            x,
+            u: [others + friction, float_nm, seen],
+            w: to.rate - x[PHI_RATE],
+            friction,
+            zeta,
+            hysteresis,
+            stop: state.stop,
+        };
+    }
+
+    fn step_s(&self, short: usize) -> f64 {
+        let full_s = self.inputs.period_s / f64::from(self.full_steps);
+        if short == 0 { full_s } else { full_s / f64::from(SHORT) }
+    }
+
+    /// The clamp, implicit: `w + brake level clamp(w / w_s) = rate`; and its mean where the step crosses a corner.
+    fn clamp(&self, state: &Running<N>, rate: f64, brake: f64, level: f64) -> (f64, Option<f64>, f64) {
+        let slip = self.physics.config.bearing.slip_rate_radps;
+        let asymmetry = self.physics.friction.asymmetry;
+        let side = |w: f64| level * (1.0 + asymmetry * sign(w));
+        let pull = brake * side(rate);
+        let w = if rate.abs() > slip + pull { rate - pull * rate.signum() } else { rate / (1.0 + pull / slip) };
+        let zeta = (w / slip).clamp(-1.0, 1.0);
+        let friction = side(w) * zeta;
+        let (low, high) = (state.w.min(w), state.w.max(w));
+        let crosses = (low < -slip && high > -slip) || (low < slip && high > slip);
+        let mean = (crosses && high - low > 1e-9).then(|| {
+            let area = |w: f64| {
+                let a = w.abs();
+                side(w) * if a > slip { a - 0.5 * slip } else { 0.5 * a * a / slip }
+            };
+            (area(high) - area(low)) / (high - low)
+        });
+        (friction, mean, zeta)
+    }
+
+    /// Dahl's build-up over the displacement of the step.
+    fn build_up(&self, state: &Running<N>, [rate, brake, level, step_s]: [f64; 4]) -> (f64, Option<f64>, f64) {
+        let along = self.physics.friction.presliding_rad;
+        let asymmetry = self.physics.friction.asymmetry;
+        let mut zeta = state.zeta;
+        for _ in 0..3 {
+            let w = rate - brake * level * zeta;
+            let leg = |zeta: f64, w: f64, moved: f64| {
+                let side = sign(w);
+                side + (zeta - side) * (-moved.abs() / along).exp()
+            };
+            zeta = if w * state.w < 0.0 {
+                let share = state.w / (state.w - w);
+                let turned = leg(state.zeta, state.w, 0.5 * state.w * share * step_s);
+                leg(turned, w, 0.5 * w * (1.0 - share) * step_s)
+            } else {
+                leg(state.zeta, state.w + w, 0.5 * (state.w + w) * step_s)
+            };
+        }
+        let w = rate - brake * level * zeta;
+        (level * (1.0 + asymmetry * sign(w)) * zeta, None, zeta)
+    }
+
+    /// `T_load + T_visc` and what effects make of it.
+    fn level(&self, now: &Now, w: f64) -> f64 {
+        if self.physics.config.bearing.count == 0 {
+            return 0.0;
+        }
+        let friction = &self.physics.friction;
+        let mut load = now.load * (1.0 + friction.level);
+        if friction.per_g != 0.0 {
+            load *= 1.0 + friction.per_g * now.accel[0].hypot(now.accel[1]) / GRAVITY_MPS2;
+        }
+        let mut level = load + self.viscous.torque_nm(w.abs()) * (1.0 + friction.viscous_level);
+        if let Some([excess, rate]) = friction.stribeck {
+            level += excess * (-(w / rate) * (w / rate)).exp();
+        }
+        if let Some([ratio, time_s]) = friction.drift {
+            level *= 1.0 - ratio * (-now.time_s / time_s).exp_m1();
+        }
+        level
+    }
+
+    /// Torques on the gimbal but for the bearings', and what the motor fails to give.
+    fn others(&self, now: &Now, x: &[f64; N], hysteresis: f64) -> f64 {
+        let physics = self.physics;
+        let [ax, ay, az] = now.accel;
+        let unbalance = &physics.config.unbalance;
+        let w = now.rate - x[PHI_RATE];
+        let rel = now.turned - x[PHI];
+        let mut torque = unbalance.x_kg_m * ay - unbalance.y_kg_m * ax
+            + physics.constant_nm
+            + physics.anisoelasticity * ax * ay
+            + physics.axial_leak_kg_m * az
+            + physics.cross_axis_kg_m2 * now.rate * now.cross
+            + physics.spring_nm_per_rad * rel
+            + (physics.friction.viscous_nm_s + physics.friction.quadratic_nm_s2 * w.abs()) * w;
+        if let Some(cable) = physics.hysteresis {
+            torque += cable.torque_nm * hysteresis;
+        }
+        if let Some(ripple) = physics.ripple {
+            let (sine, cosine) = (ripple.cycles * rel).sin_cos();
+            torque += ripple.sine_nm * sine + ripple.cosine_nm * cosine;
+        }
+        if physics.limit_nm.is_some() || physics.dead_zone_nm > 0.0 {
+            let command = self.command_nm(x);
+            torque += command - self.motor(command);
+        }
+        torque
+    }
+
+    fn hysteresis_after(&self, z: f64, turned: f64) -> f64 {
+        let Some(cable) = self.physics.hysteresis else { return z };
+        let slope = |z: f64| if z * turned > 0.0 { 1.0 - z * z } else { 1.0 };
+        let moved = turned / cable.displacement_rad;
+        let half = z + 0.5 * moved * slope(z);
+        (z + moved * slope(half)).clamp(-1.0, 1.0)
+    }
+
+    fn float_nm(&self, now: &Now) -> f64 {
+        self.physics.float_nm + self.physics.float_kg_m * now.accel[0]
+    }
+
+    fn command_nm(&self, x: &[f64; N]) -> f64 {
+        if N == PLAIN { x[TORQUE] } else { self.command.iter().zip(x).map(|(share, x)| share * x).sum() }
+    }
+
+    fn motor(&self, command_nm: f64) -> f64 {
+        let limit = self.physics.limit_nm.unwrap_or(f64::INFINITY);
+        let clamped = command_nm.clamp(-limit, limit);
+        clamped - clamped.clamp(-self.physics.dead_zone_nm, self.physics.dead_zone_nm)
+    }
+
+    fn seen(&self, theta: f64) -> f64 {
+        let quantum = self.physics.quantum_rad;
+        if quantum > 0.0 { quantum * (theta / quantum).round() } else { theta }
+    }
+
+    /// The float meets a stop, or leaves it.
+    fn contact(&self, state: &mut Running<N>) {
+        let gyro = &self.physics.config.gyro;
+        if state.stop == 0 {
+            if state.x[THETA].abs() >= gyro.stop_angle_rad && state.x[THETA] * state.x[THETA_RATE] > 0.0 {
+                state.stop = if state.x[THETA] > 0.0 { 1 } else { -1 };
+                state.x[THETA] = gyro.stop_angle_rad * f64::from(state.stop);
+                state.x[THETA_RATE] = 0.0;
+            }
+        } else if (gyro.angular_momentum_nm_s * state.x[PHI_RATE] + state.u[1]) * f64::from(state.stop) < 0.0 {
+            state.stop = 0;
+        }
+    }
+}
+
+fn sign(value: f64) -> f64 {
+    if value > 0.0 {
+        1.0
+    } else if value < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
