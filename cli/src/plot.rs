@@ -23,7 +23,7 @@ const MOST_DASHED_PX: f64 = 20_000.0;
 const FONT: &str = "sans-serif";
 const INK: RGBColor = RGBColor(34, 34, 34);
 const GRID: RGBColor = RGBColor(214, 214, 214);
-const SHADE: RGBColor = RGBColor(232, 222, 200);
+const SHADE: RGBColor = RGBColor(222, 204, 160);
 
 /// Colour, width, and dash and gap of a line.
 type Style = (RGBColor, u32, Option<(i32, i32)>);
@@ -121,7 +121,7 @@ impl Figure<'_> {
             .build_cartesian_2d(from_s..to_s, (least - margin)..(most + margin))?;
         let corners = [least - margin, most + margin];
         // No span is too short to be seen.
-        let least_s = 2.0 * (to_s - from_s) / f64::from(WIDTH - LEFT - RIGHT);
+        let least_s = 4.0 * (to_s - from_s) / f64::from(WIDTH - LEFT - RIGHT);
         let spans =
             self.shaded.iter().map(|&(from_s, to_s)| [(from_s, corners[0]), (to_s.max(from_s + least_s), corners[1])]);
         chart.draw_series(spans.map(|corners| Rectangle::new(corners, SHADE.filled())))?;
