@@ -1,5 +1,7 @@
 //! One axis of the library, run over rows in either number system, and the plant beside it.
 
+use std::fmt::Write;
+
 use gimbal_plant::{Plant, Row, StopEventKind};
 use gimbal_servo::{BuildError, Config, Faults, Fixed, Input, Law, Number, Output, State, Stop};
 
@@ -149,6 +151,9 @@ impl Run {
     }
 
     /// Largest difference of a signal from another run's, over the other's peak.
+    ///
+    /// # Panics
+    /// If the runs are not of one length.
     pub fn difference(&self, other: &Self, of: impl Fn(&Sample) -> f64) -> f64 {
         assert_eq!(self.samples.len(), other.samples.len(), "runs of one length");
         let pairs = self.samples.iter().zip(&other.samples);
@@ -165,7 +170,7 @@ impl Run {
         for (name, difference) in [("phi", phi), ("theta", theta)] {
             // NaN counts as off
             if difference.is_nan() || difference > bound {
-                text += &format!(" {name} off by {difference:.3e} of its peak");
+                write!(text, " {name} off by {difference:.3e} of its peak").expect("a string takes all");
             }
         }
         text

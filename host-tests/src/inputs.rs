@@ -43,7 +43,7 @@ pub fn friction_profile(accel_g: f64, period_s: f64) -> Vec<Row> {
     let mut rows = unbalance_profile(accel_g, period_s);
     let half = rows_in(2.0, period_s) - 1;
     for (k, row) in rows.iter_mut().enumerate() {
-        row.vehicle_rate_radps = if (k / half) % 2 == 0 { 0.1 } else { -0.1 };
+        row.vehicle_rate_radps = if (k / half).is_multiple_of(2) { 0.1 } else { -0.1 };
     }
     rows
 }

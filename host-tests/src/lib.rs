@@ -5,7 +5,10 @@
 
 pub mod axis;
 pub mod compare;
+pub mod digests;
 pub mod exact;
+pub mod figures;
+pub mod hour;
 pub mod inputs;
 pub mod random;
 pub mod rocket;

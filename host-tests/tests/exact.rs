@@ -4,9 +4,9 @@
 //! modes nor its partial fractions.
 
 use gimbal_servo::Config;
-use host_tests::axis::{System, run};
-use host_tests::exact::Exact;
-use host_tests::inputs::{bare, held, torque_chirp, torque_jumps, torques};
+use host_tests::axis::System;
+use host_tests::figures::exact_errors;
+use host_tests::inputs::{bare, held, torque_chirp, torque_jumps};
 
 /// Asked for at 1 ms: 2e-6 of the peak in `f32`, 1e-6 in fixed point.
 fn bound(system: System) -> f64 {
@@ -16,31 +16,12 @@ fn bound(system: System) -> f64 {
     }
 }
 
-/// Largest errors of phi and theta over their peaks, the torques scaled to a peak of phi.
-fn errors(system: System, config: &Config, torques_nm: &[f64], peak_rad: f64) -> (f64, f64) {
-    let peak = |angles: &[(f64, f64)]| {
-        angles.iter().fold((0.0, 0.0), |most: (f64, f64), angle| (most.0.max(angle.0.abs()), most.1.max(angle.1.abs())))
-    };
-    let scale = peak_rad / peak(&Exact::run(config, torques_nm.iter().copied())).0;
-    // Torques that both number systems take without rounding them: what is compared is the loop.
-    #[allow(clippy::cast_possible_truncation, reason = "rounding is the purpose")]
-    let torques_nm: Vec<f64> = torques_nm.iter().map(|&torque| f64::from((scale * torque) as f32)).collect();
-    let exact = Exact::run(config, torques_nm.iter().copied());
-    let run = run(system, config, &torques(&torques_nm));
-    assert!(run.events.is_empty(), "the stops are out of reach");
-    let pairs = run.samples.iter().zip(&exact);
-    let errors: Vec<(f64, f64)> =
-        pairs.map(|(sample, exact)| (sample.gimbal_angle_rad - exact.0, sample.gyro_angle_rad - exact.1)).collect();
-    let (error, peak) = (peak(&errors), peak(&exact));
-    (error.0 / peak.0, error.1 / peak.1)
-}
-
 /// Accuracy is promised for peaks of phi of 1 mrad and more; at 1.9 mrad theta is near its stop.
 fn check(name: &str, torques_nm: &[f64], bound: impl Fn(System) -> f64) {
     for system in System::BOTH {
         for config in [Config::consistent(), Config::as_printed()] {
             for peak_rad in [1e-3, 1.9e-3] {
-                let (phi, theta) = errors(system, &held(bare(config)), torques_nm, peak_rad);
+                let [phi, theta] = exact_errors(system, &held(bare(config)), torques_nm, peak_rad);
                 let text = format!("{name} {} {peak_rad} rad: phi {phi:.2e} theta {theta:.2e}", system.name());
                 println!("{text}");
                 assert!(phi <= bound(system) && theta <= bound(system), "{text}");
@@ -51,7 +32,7 @@ fn check(name: &str, torques_nm: &[f64], bound: impl Fn(System) -> f64) {
 
 #[test]
 fn cross_a_step_is_exact_over_ten_seconds() {
-    check("step", &[1.0; 10_001], bound);
+    check("step", &vec![1.0; 10_001], bound);
 }
 
 #[test]
