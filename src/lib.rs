@@ -32,6 +32,7 @@ mod config;
 mod crossing;
 mod digest;
 mod error;
+pub mod estimator;
 mod faults;
 mod free;
 mod friction;

@@ -89,7 +89,7 @@ pub trait Number:
     /// Square root of the sum of two squares, for values below 0.7 of the full scale, to 2e-5.
     #[must_use]
     fn hypot(self, other: Self, table: &SqrtTable<Self>) -> Self;
-    /// Position of a positive value on the logarithmic grid of [`crate::table`]: sixteen steps an octave.
+    /// Position of a positive value on a logarithmic grid of sixteen steps an octave.
     fn sixteenth(self) -> i32;
     /// Smallest value at step `step` of that grid.
     fn sixteenth_start(step: i32) -> Self;

@@ -31,6 +31,9 @@ pub struct Wide(i64);
 /// -1 is left out, so that a product of two fractions is a fraction and `-x` exists for every x.
 const LARGEST: i32 = i32::MAX;
 
+/// What a value that is not finite becomes; no arithmetic makes it.
+const NOT_A_NUMBER: Fixed = Fixed(i32::MIN);
+
 /// 1 as a sum.
 const FULL: i64 = 1 << 62;
 
@@ -227,12 +230,13 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn within(self, limit: Self) -> bool {
+        // NOT_A_NUMBER has the largest absolute value, which no limit reaches.
         self.abs() <= limit
     }
 
     #[inline(always)]
     fn is_number(self) -> bool {
-        self.0 != i32::MIN
+        self != NOT_A_NUMBER
     }
 
     #[inline(always)]
@@ -254,6 +258,9 @@ impl Number for Fixed {
     }
 
     fn quantise(value: f64, exponent: i32) -> Self {
+        if !value.is_finite() {
+            return NOT_A_NUMBER;
+        }
         let scaled = libm::round(libm::ldexp(value, 31 - exponent));
         Self::from_raw(scaled as i32)
     }

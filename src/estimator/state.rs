@@ -1,0 +1,70 @@
+//! What the estimator remembers between two rows.
+
+use super::filter::STATES;
+use super::flags::Flags;
+use super::{health, held};
+use crate::ins;
+use crate::number::Number;
+use crate::stop::Side;
+
+/// Everything that an estimate depends on: plain data.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State<N: Number> {
+    /// theta, w, p, d.
+    pub(crate) filter: [N::Wide; STATES],
+    /// Motor torque, theta and inputs as last admitted.
+    pub(crate) torque: N,
+    pub(crate) gyro: N,
+    pub(crate) inputs: [N; health::INPUTS],
+    /// Uncertainty from what the filter has not followed yet.
+    pub(crate) transient: N,
+    /// What phi has moved unseen by the gyro, and its uncertainty.
+    pub(crate) offset: N::Wide,
+    pub(crate) offset_bound: N,
+    pub(crate) ins: ins::State<N>,
+    pub(crate) regime: Regime,
+    /// Whether the next row needs a closer look: settling, or a sensor that was not well.
+    pub(crate) watched: bool,
+    pub(crate) health: health::State,
+    /// Rows until the filter's steady gains hold.
+    pub(crate) settling: u32,
+    /// How much farther out than theta the filter has been lately, near a stop.
+    pub(crate) outward: N,
+    pub(crate) held: held::State<N>,
+    /// The servo as it follows theta, where the motor torque is not measured.
+    pub(crate) servo: [N::Wide; 6],
+    /// Bits that stay set.
+    pub(crate) lasting: Flags,
+}
+
+/// What the float does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Regime {
+    /// No row has come yet.
+    New,
+    Free,
+    Held(Side),
+}
+
+impl<N: Number> State<N> {
+    pub(crate) fn new() -> Self {
+        Self {
+            filter: [N::Wide::default(); STATES],
+            torque: N::ZERO,
+            gyro: N::ZERO,
+            inputs: [N::ZERO; health::INPUTS],
+            transient: N::ZERO,
+            offset: N::Wide::default(),
+            offset_bound: N::ZERO,
+            ins: ins::State::default(),
+            regime: Regime::New,
+            watched: true,
+            health: health::State::default(),
+            settling: 0,
+            outward: N::ZERO,
+            held: held::State::default(),
+            servo: [N::Wide::default(); 6],
+            lasting: Flags::NONE,
+        }
+    }
+}
