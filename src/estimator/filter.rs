@@ -108,11 +108,7 @@ impl Filter {
 }
 
 /// Gain, variance after the correction, variance of the innovation.
-fn steady(
-    transition: &Square<STATES>,
-    noise: &Square<STATES>,
-    reading: f64,
-) -> ([f64; STATES], Square<STATES>, f64) {
+fn steady(transition: &Square<STATES>, noise: &Square<STATES>, reading: f64) -> ([f64; STATES], Square<STATES>, f64) {
     let mut variance = [[0.0; STATES]; STATES];
     for (place, row) in variance.iter_mut().enumerate() {
         row[place] = reading;

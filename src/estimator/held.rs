@@ -97,13 +97,7 @@ impl<N: Number> Law<N> {
     }
 
     /// One period under the mean motor torque `torque`.
-    pub(crate) fn advance(
-        &self,
-        state: &mut State<N>,
-        axis: &crate::Law<N>,
-        model: &ModelState<N>,
-        torque: N,
-    ) {
+    pub(crate) fn advance(&self, state: &mut State<N>, axis: &crate::Law<N>, model: &ModelState<N>, torque: N) {
         let rate = N::narrow(state.rate);
         let modelled = self.modelled(axis, model, rate);
         let mean = (state.modelled.half() + modelled.half()).shift_down(self.torque_shift);

@@ -114,13 +114,7 @@ pub(crate) fn share<N: Number>(value: f64) -> N::Coef {
 }
 
 impl<N: Number> Law<N> {
-    pub(crate) fn build(
-        config: &Config,
-        axis: &crate::Config,
-        units: &Units,
-        filter: &Filter,
-        quick: &Filter,
-    ) -> Self {
+    pub(crate) fn build(config: &Config, axis: &crate::Config, units: &Units, filter: &Filter, quick: &Filter) -> Self {
         let period = axis.period_s;
         let (bo, h) = (axis.gyro.damping_nm_s_per_rad, axis.gyro.angular_momentum_nm_s);
         let jg = axis.servo.gimbal_inertia_kg_m2;
@@ -300,8 +294,7 @@ impl<N: Number> Law<N> {
         let signals = [theta, w, p, d, state.torque];
         let seen = self.seen.increment(&signals);
         let angle = N::narrow(state.offset + seen);
-        let mut bound =
-            self.root_sum.of(self.noise + state.transient, N::head(self.ratio_share * N::head(seen).abs()));
+        let mut bound = self.root_sum.of(self.noise + state.transient, N::head(self.ratio_share * N::head(seen).abs()));
         if state.offset_bound != N::ZERO {
             bound = self.root_sum.of(bound, state.offset_bound);
         }
@@ -531,8 +524,7 @@ impl<N: Number> Law<N> {
         let rate = N::narrow(held.rate) + side.mirror(fall.rate);
         let excess = self.held.spanned(&held, rate);
         let reading = self.held.spanned(&held, fall.rate_bound);
-        let Correction { angle, bound } =
-            release::Law::correction(&self.held, &held, &self.root_sum, excess, reading);
+        let Correction { angle, bound } = release::Law::correction(&self.held, &held, &self.root_sum, excess, reading);
         let p = self.release.rate.times(fall.rate);
         self.place(state, gyro, -side.mirror(fall.slope), -side.mirror(p));
         let torque = held.surplus + held.modelled.shift_down(self.held.torque_shift);

@@ -112,7 +112,8 @@ impl<N: Number> Law<N> {
     ) -> Correction<N> {
         let modes = held.modes(state);
         let largest = modes.iter().fold(reading, |most, (_, rate)| most.most(rate.abs()));
-        let (mut square, mut cross) = (eighth(N::ONE.times(reading.ratio(largest)).times(reading.ratio(largest))), N::ZERO);
+        let (mut square, mut cross) =
+            (eighth(N::ONE.times(reading.ratio(largest)).times(reading.ratio(largest))), N::ZERO);
         for (angle, rate) in &modes {
             let rate = rate.ratio(largest);
             square = square + eighth(rate.times(rate));
