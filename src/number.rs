@@ -41,6 +41,8 @@ pub trait Number:
     const ZERO: Self;
     /// 1 in the full scale 2^0.
     const ONE: Self;
+    /// Half of what [`Number::narrow`] drops at most; 0 for `f32`. A sum that holds it is narrowed to the nearest signal.
+    const HALF_BIT: Self::Wide;
 
     /// Smallest mantissa of [`Number::hypot`].
     const SQRT_LOWEST: f64;

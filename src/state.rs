@@ -68,7 +68,8 @@ impl<N: Number> State<N> {
             gimbal_rate: N::ZERO,
             relative_rate: N::ZERO,
             drift: N::ZERO,
-            offset: N::Wide::default(),
+            // phi is rounded to the nearest, so that an hour of its sum has no bias.
+            offset: N::HALF_BIT,
             free: free::State::<N>::default(),
             held: stop::State::default(),
             ins: ins::State::default(),

@@ -111,6 +111,7 @@ impl Number for Fixed {
 
     const ZERO: Self = Self(0);
     const ONE: Self = Self(LARGEST);
+    const HALF_BIT: Wide = Wide(1 << 30);
     const SQRT_LOWEST: f64 = 0.25;
     const HAS_SCALES: bool = true;
     const TAG: u8 = b'q';

@@ -20,6 +20,7 @@ impl Number for f32 {
 
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
+    const HALF_BIT: f32 = 0.0;
     const SQRT_LOWEST: f64 = 1.0;
     const HAS_SCALES: bool = false;
     const TAG: u8 = b'f';
