@@ -38,10 +38,8 @@ fn closed_form_a_steady_theta_drifts_at_its_rate() {
         let without = run(system, &config, &still);
         let drift = with.last().gimbal_angle_rad - without.last().gimbal_angle_rad;
         let expected: f64 = -with.samples.iter().map(|sample| sample.gyro_angle_rad * spin * 1e-3).sum::<f64>();
-        // The servo holds theta, which the coupling changes by w_x over the loop's bandwidth: 1e-3. In fixed point the
-        // drift is rounded down to the full scales' product, 2^-31 of 2^2 rad times 2^7 rad/s: 1.2e-7 rad/s on
-        // average, where theta w_x is 9e-6.
-        let bound = if system == System::F32 { 5e-3 } else { 3e-2 };
+        // The servo holds theta, which the coupling changes by w_x over the loop's bandwidth: 1e-3.
+        let bound = 5e-3;
         assert!(relative(drift, expected) < bound, "{} {drift} {expected}", system.name());
     }
 }
@@ -61,8 +59,7 @@ fn closed_form_without_the_option_nothing_couples() {
 
 /// The law multiplies each row's spin rate by theta of the row before: a drift that swings f times a second comes out
 /// `2 pi f T` too late, 3e-3 of it at 0.5 Hz and 2e-2 at 3 Hz. The drift of a transient is off by a period times its
-/// bandwidth, 4e-3 here, and by what the stop adds while theta falls from it. Fixed point rounds the drift down by
-/// 1.2e-7 rad/s, 7e-7 rad in these six seconds.
+/// bandwidth, 4e-3 here, and by what the stop adds while theta falls from it.
 #[test]
 fn cross_drift_agrees_with_the_plant() {
     type Inputs = fn(f64) -> Row;
@@ -112,7 +109,7 @@ fn cross_drift_agrees_with_the_plant() {
                 run_on.faults,
             );
             println!("{text}");
-            assert!(phi <= bound && worst <= bound * size + 1e-6, "{text}");
+            assert!(phi <= bound && worst <= bound * size, "{text}");
         }
     }
 }
