@@ -16,6 +16,7 @@ const STEPS: usize = 2;
 
 impl<N: Number> Arc<N> {
     /// The share of the period before the crossing, 0..=1, for `start <= 0 <= end`.
+    #[inline(never)]
     pub(crate) fn root(&self) -> N {
         if self.start >= N::ZERO {
             return N::ZERO;
@@ -32,12 +33,14 @@ impl<N: Number> Arc<N> {
     }
 
     /// Change per period at `share` of the period.
+    #[inline(never)]
     pub(crate) fn slope(&self, share: N) -> N {
         let (quadratic, cubic) = self.bend();
         let twice = (quadratic + cubic.times(share)).times(share);
         self.start_slope + twice + twice + cubic.times(share).times(share)
     }
 
+    #[inline(never)]
     fn at(&self, share: N) -> N {
         let (quadratic, cubic) = self.bend();
         self.start + (self.start_slope + (quadratic + cubic.times(share)).times(share)).times(share)

@@ -64,6 +64,7 @@ impl<N: Number> Law<N> {
     }
 
     /// The zone is entered from above, and perhaps left below.
+    #[inline(never)]
     fn mean_from_slip(&self, start: N, free_end: N, brake: N) -> N {
         let slip = self.slip_rate;
         let before = (start - slip).ratio(start - (free_end - brake));
@@ -81,6 +82,7 @@ impl<N: Number> Law<N> {
     }
 
     /// The zone is where the period starts; it may be left on either side.
+    #[inline(never)]
     fn mean_from_zone(&self, start: N, free_end: N, brake: N) -> N {
         let slip = self.slip_rate;
         let here = self.clamp(start);
@@ -97,6 +99,7 @@ impl<N: Number> Law<N> {
     }
 
     /// The zone is left above.
+    #[inline(never)]
     fn mean_out_of_zone(&self, start: N, free_end: N, brake: N, here: N) -> N {
         let inside = here.half() + N::ONE.half();
         let before = (self.slip_rate - start).ratio(free_end - start - brake.times(inside));

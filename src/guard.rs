@@ -25,9 +25,10 @@ impl<N: Number> Law<N> {
         }
     }
 
-    /// The row with each value clamped to its range, or replaced by the last good one where it is not a number.
+    /// Makes the row one that the law may take: each value clamped to its range, or replaced by the last good one where
+    /// it is not a number.
     #[inline(always)]
-    pub(crate) fn admit(&self, last: &Input<N>, row: &Input<N>) -> (Input<N>, Faults) {
+    pub(crate) fn admit(&self, last: &Input<N>, row: &mut Input<N>) -> Faults {
         // One branch for all six.
         let within = row.accel_x_mps2.within(self.radial_accel)
             & row.accel_y_mps2.within(self.radial_accel)
@@ -35,32 +36,31 @@ impl<N: Number> Law<N> {
             & row.vehicle_rate_radps.within(self.rate)
             & row.torque_nm.within(self.torque)
             & row.spin_rate_radps.within(self.rate);
-        if within { (*row, Faults::NONE) } else { self.mend(last, row) }
+        if within { Faults::NONE } else { self.mend(last, row) }
     }
 
     #[cold]
     #[inline(never)]
-    fn mend(&self, last: &Input<N>, row: &Input<N>) -> (Input<N>, Faults) {
+    fn mend(&self, last: &Input<N>, row: &mut Input<N>) -> Faults {
         let mut faults = Faults::NONE;
-        let mut admit = |value: N, last: N, limit: N| {
+        let mut admit = |value: &mut N, last: N, limit: N| {
             if value.within(limit) {
-                value
-            } else if value.is_number() {
+                return;
+            }
+            if value.is_number() {
                 faults |= Faults::INPUT_OUT_OF_RANGE;
-                if value > N::ZERO { limit } else { -limit }
+                *value = if *value > N::ZERO { limit } else { -limit };
             } else {
                 faults |= Faults::INPUT_NOT_FINITE;
-                last
+                *value = last;
             }
         };
-        let row = Input {
-            accel_x_mps2: admit(row.accel_x_mps2, last.accel_x_mps2, self.radial_accel),
-            accel_y_mps2: admit(row.accel_y_mps2, last.accel_y_mps2, self.radial_accel),
-            accel_z_mps2: admit(row.accel_z_mps2, last.accel_z_mps2, self.axial_accel),
-            vehicle_rate_radps: admit(row.vehicle_rate_radps, last.vehicle_rate_radps, self.rate),
-            torque_nm: admit(row.torque_nm, last.torque_nm, self.torque),
-            spin_rate_radps: admit(row.spin_rate_radps, last.spin_rate_radps, self.rate),
-        };
-        (row, faults)
+        admit(&mut row.accel_x_mps2, last.accel_x_mps2, self.radial_accel);
+        admit(&mut row.accel_y_mps2, last.accel_y_mps2, self.radial_accel);
+        admit(&mut row.accel_z_mps2, last.accel_z_mps2, self.axial_accel);
+        admit(&mut row.vehicle_rate_radps, last.vehicle_rate_radps, self.rate);
+        admit(&mut row.torque_nm, last.torque_nm, self.torque);
+        admit(&mut row.spin_rate_radps, last.spin_rate_radps, self.rate);
+        faults
     }
 }

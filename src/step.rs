@@ -53,8 +53,9 @@ impl<N: Number> Law<N> {
     ///
     /// The first call has no period behind it: it gives the initial state. Every later call advances the axis by one
     /// period over which the mean of the last two rows acts (or the last row, [`crate::Interpolation::Held`]).
-    pub fn step(&self, state: &mut State<N>, input: Input<N>) -> Output<N> {
-        let now = self.disturbance(state, &input);
+    pub fn step(&self, state: &mut State<N>, mut input: Input<N>) -> Output<N> {
+        let faults = self.guard.admit(&state.row, &mut input);
+        let now = self.disturbance(state, input, faults);
         if state.regime != Regime::Free {
             return self.step_held(state, now);
         }
@@ -78,10 +79,9 @@ impl<N: Number> Law<N> {
         self.finish(state, now, moved)
     }
 
-    /// The row as admitted, and the disturbance at it.
+    /// The disturbance at an admitted row.
     #[inline(always)]
-    fn disturbance(&self, state: &State<N>, input: &Input<N>) -> Disturbance<N> {
-        let (row, faults) = self.guard.admit(&state.row, input);
+    fn disturbance(&self, state: &State<N>, row: Input<N>, faults: Faults) -> Disturbance<N> {
         let unbalance = self.unbalance.at(&[row.accel_x_mps2, row.accel_y_mps2]);
         // The level's viscous part takes the bearing's rate with phi' as it was at the last row.
         let rate = row.vehicle_rate_radps - state.gimbal_rate.shift_down(self.rate_shift);

@@ -13,8 +13,8 @@ use crate::stop::{self, Side};
 impl<N: Number> Law<N> {
     /// [`Law::finish`] off the straight path.
     #[inline(never)]
-    fn finish_held(&self, state: &mut State<N>, now: Disturbance<N>, moved: Moved<N>) -> Output<N> {
-        let mut output = self.finish(state, now, moved);
+    fn finish_held(&self, state: &mut State<N>, now: &Disturbance<N>, moved: &Moved<N>) -> Output<N> {
+        let mut output = self.finish(state, *now, *moved);
         if matches!(state.regime, Regime::Held(_)) {
             output.faults |= Faults::GYRO_SATURATED;
         }
@@ -25,7 +25,7 @@ impl<N: Number> Law<N> {
     #[inline(never)]
     pub(super) fn step_held(&self, state: &mut State<N>, now: Disturbance<N>) -> Output<N> {
         let moved = match state.regime {
-            Regime::Held(side) => self.move_on_stop(state, now, side),
+            Regime::Held(side) => self.move_on_stop(state, &now, side),
             Regime::Free | Regime::New => {
                 state.regime = Regime::Free;
                 Moved {
@@ -37,7 +37,7 @@ impl<N: Number> Law<N> {
                 }
             }
         };
-        self.finish_held(state, now, moved)
+        self.finish_held(state, &now, &moved)
     }
 
     /// theta ended the period beyond its stop.
@@ -74,7 +74,7 @@ impl<N: Number> Law<N> {
         self.stop.contact.correct(&mut state.held, &arc, share, side);
         state.regime = Regime::Held(side);
         let moved = self.moved_on_stop(state, stop, N::ONE - share);
-        self.finish_held(state, now, moved)
+        self.finish_held(state, &now, &moved)
     }
 
     fn moved_on_stop(&self, state: &State<N>, stop: N, stop_change_age: N) -> Moved<N> {
@@ -88,8 +88,8 @@ impl<N: Number> Law<N> {
     }
 
     #[inline(never)]
-    fn move_on_stop(&self, state: &mut State<N>, now: Disturbance<N>, side: Side) -> Moved<N> {
-        let acting = self.acting(state, now);
+    fn move_on_stop(&self, state: &mut State<N>, now: &Disturbance<N>, side: Side) -> Moved<N> {
+        let acting = self.acting(state, *now);
         let stop = side.mirror(self.stop.angle);
         let quiet_rate = self.stop.gimbal_rate(&state.held, stop, acting.other);
         let brake = self.stop.gimbal_rate_gain.at(&[acting.friction_level]);
