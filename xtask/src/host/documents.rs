@@ -22,7 +22,7 @@ struct Message {
 }
 
 /// Units of one word; rustdoc takes nothing with a space or a slash for a link.
-const UNITS: [&str; 18] = [
+const UNITS: [&str; 22] = [
     "s",
     "ms",
     "us",
