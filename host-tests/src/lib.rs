@@ -6,6 +6,7 @@
 pub mod axis;
 pub mod compare;
 pub mod digests;
+pub mod estimate;
 pub mod exact;
 pub mod figures;
 pub mod hour;

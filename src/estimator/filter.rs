@@ -22,7 +22,7 @@ pub(crate) struct Filter {
     generator: Square<5>,
     /// Change of the state over a period, for the state itself; theta and d make none.
     pub(crate) change: Square<STATES>,
-    /// The same for u.
+    /// The same for `T_m`.
     pub(crate) drive: [f64; STATES],
     /// Correction for an innovation of 1.
     pub(crate) gain: [f64; STATES],
@@ -30,7 +30,7 @@ pub(crate) struct Filter {
     pub(crate) innovation_rad: f64,
     /// Variance after the correction.
     pub(crate) variance: Square<STATES>,
-    /// u for a torque of 1 N m.
+    /// s: d for a torque of 1 N m.
     pub(crate) torque_scale: f64,
     /// `Bo / H`.
     pub(crate) ratio: f64,
@@ -48,7 +48,7 @@ impl Filter {
         let generator = [
             [0.0, 1.0, 0.0, 0.0, 0.0],
             [0.0, -lambda, lambda, 0.0, 0.0],
-            [0.0, -coupling, 0.0, 1.0, -1.0],
+            [0.0, -coupling, 0.0, 1.0, -torque_scale],
             [0.0; 5],
             [0.0; 5],
         ];
@@ -57,7 +57,7 @@ impl Filter {
         let drive: [f64; STATES] = core::array::from_fn(|i| whole[i][4]);
         let walk = torque_scale * walk_nm;
         // Two neighbouring samples make the mean that drives the filter.
-        let torque_noise = torque_scale * config.sensors.motor_torque_noise_nm * core::f64::consts::FRAC_1_SQRT_2;
+        let torque_noise = config.sensors.motor_torque_noise_nm * core::f64::consts::FRAC_1_SQRT_2;
         let walk_column: [f64; STATES] = core::array::from_fn(|i| whole[i][3]);
         let noise: Square<STATES> = core::array::from_fn(|i| {
             core::array::from_fn(|j| {
@@ -84,7 +84,7 @@ impl Filter {
         }
     }
 
-    /// Rows of theta, w, p, d, u that give the state `periods` later, u kept on.
+    /// Rows of theta, w, p, d, `T_m` that give the state `periods` later, `T_m` kept on.
     pub(crate) fn ahead(&self, periods: f64) -> Square<5> {
         exponential(&self.generator.map(|row| row.map(|x| x * periods)))
     }

@@ -65,7 +65,7 @@ fn moved_within<N: Number>(difference: N, limit: u32) -> bool {
 const OUTAGE: u32 = 4;
 
 impl<N: Number> Law<N> {
-    pub(crate) fn build(config: &Config, axis: &crate::Config, units: &Units) -> Self {
+    pub(crate) fn build(config: &Config, axis: &crate::Config, units: &Units, gyro: i32) -> Self {
         let sensors = &config.sensors;
         let bits = |value: f64, exponent| N::quantise(value, exponent).to_bits();
         let accel = bits(sensors.accel_jump_mps2, units.accel);
@@ -74,7 +74,7 @@ impl<N: Number> Law<N> {
         Self {
             jumps: [accel, accel, accel, bits(sensors.rate_jump_radps, units.rate)],
             torque_jump: bits(sensors.torque_jump_nm, units.motor_torque),
-            gyro_range: N::quantise(sensors.gyro_range_rad, units.gyro_angle),
+            gyro_range: N::quantise(sensors.gyro_range_rad, gyro),
             torque_range: N::quantise(20.0 * axis.range.torque_nm, units.motor_torque),
             stuck_rows: sensors.stuck_rows,
             bridge_rows,

@@ -25,7 +25,7 @@ use crate::units::Units;
 
 /// What the sensors of the axis read at this row; `None` where there is no reading.
 ///
-/// In the full scales of the axis' [`Units`]. A reading that is not finite counts as none.
+/// In the full scales that [`Law::measured`] gives. A reading that is not finite counts as none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Measured<N> {
     /// theta [rad].
@@ -96,7 +96,8 @@ pub struct Law<N: Number> {
     delay: ScaledRow<N, 1>,
     servo: Servo<N>,
     units: Units,
-    period_s: f64,
+    /// Full scale of theta.
+    gyro: i32,
 }
 
 /// (3) as it follows theta: y, then `z_i`.
@@ -116,14 +117,16 @@ pub(crate) fn share<N: Number>(value: f64) -> N::Coef {
 impl<N: Number> Law<N> {
     pub(crate) fn build(config: &Config, axis: &crate::Config, units: &Units, filter: &Filter, quick: &Filter) -> Self {
         let period = axis.period_s;
-        let (bo, h) = (axis.gyro.damping_nm_s_per_rad, axis.gyro.angular_momentum_nm_s);
+        let h = axis.gyro.angular_momentum_nm_s;
         let jg = axis.servo.gimbal_inertia_kg_m2;
         let tolerance = &config.tolerance;
         let stop = axis.gyro.stop_angle_rad;
         let largest_gain = filter.gain.iter().chain(&quick.gain).fold(0.0_f64, |most, gain| most.max(gain.abs()));
         // The gains are fractions between theta's full scale and the filter's.
         let shift = N::exponent(largest_gain).max(0);
-        let scale = units.gyro_angle + shift;
+        // The axis' own full scale of theta holds its modes, which are larger.
+        let gyro = units.gyro_angle.min(N::exponent(8.0 * stop));
+        let scale = gyro + shift;
         let torque = units.motor_torque;
         let from = [scale, scale, scale, torque];
         let signals = [scale, scale, scale, scale, torque];
@@ -134,14 +137,14 @@ impl<N: Number> Law<N> {
         let now = filter.seen_row(0.0);
         let seen_gain: f64 = now.iter().zip(&filter.gain).map(|(row, gain)| row * gain).sum();
         let read = libm::hypot(config.sensors.gyro_noise_rad, config.sensors.gyro_step_rad / libm::sqrt(12.0));
-        let angle = |value: f64| N::quantise(value, units.gyro_angle);
+        let angle = |value: f64| N::quantise(value, gyro);
         let zone = stop * (1.0 - 3.0 * tolerance.stop_angle) - 6.0 * filter.innovation_rad;
         let seen_noise = filter.deviation(&[now[0], now[1], now[2], now[3]]);
         let rate_noise = filter.ratio / period * filter.deviation(&[0.0, 0.0, 1.0, 0.0]);
         // phi from a rate that is uncertain, and from a torque that may have come.
         let outage = rate_noise * period + 0.5 * period * period * 0.1 * axis.range.torque_nm / jg;
         Self {
-            health: health::Law::build(config, axis, units),
+            health: health::Law::build(config, axis, units, gyro),
             change: core::array::from_fn(|i| {
                 let [_, w, p, d] = filter.change[i];
                 Row::build([w, p, d, filter.drive[i]], from, scale)
@@ -157,7 +160,7 @@ impl<N: Number> Law<N> {
             noise: N::quantise(seen_noise, units.gimbal_angle),
             // The filter forgets an innovation at about the pace at which it takes d in.
             transient_decay: N::coef(0.9),
-            transient_gain: N::coef(N::rescaled(seen_gain, units.gyro_angle - units.gimbal_angle)),
+            transient_gain: N::coef(N::rescaled(seen_gain, gyro - units.gimbal_angle)),
             usual: angle(2.5 * filter.innovation_rad),
             widest: N::quantise(config.widest_bound_rad, units.gimbal_angle),
             root_sum: RootSum::build(),
@@ -167,7 +170,7 @@ impl<N: Number> Law<N> {
             settling_rows: 40,
             held: held::Law::build(config, axis, units, filter),
             release: release::Law::build(axis, units, scale),
-            rate: ScaledRow::build([filter.ratio / period, h / jg], [scale, units.gyro_angle], units.gimbal_rate),
+            rate: ScaledRow::build([filter.ratio / period, h / jg], [scale, gyro], units.gimbal_rate),
             coupling: ScaledRow::build([h / period], [scale], torque),
             load: ScaledRow::build([filter.torque_scale], [torque], scale),
             fallen: angle(5.5 * read),
@@ -175,7 +178,7 @@ impl<N: Number> Law<N> {
             delay: ScaledRow::build([config.sensors.delay_s], [units.gimbal_rate], units.gimbal_angle),
             servo: Servo::build(&Plant::new(axis), units, scale, period),
             units: *units,
-            period_s: period * bo / bo,
+            gyro,
         }
     }
 
@@ -192,7 +195,7 @@ impl<N: Number> Law<N> {
             value.filter(|value| value.is_finite()).map(|value| N::quantise(value, exponent))
         };
         Measured {
-            gyro_angle_rad: quantise(gyro_angle_rad, self.units.gyro_angle),
+            gyro_angle_rad: quantise(gyro_angle_rad, self.gyro),
             motor_torque_nm: quantise(motor_torque_nm, self.units.motor_torque),
         }
     }
@@ -204,7 +207,7 @@ impl<N: Number> Law<N> {
             gimbal_angle_rad: estimate.gimbal_angle_rad.to_f64(self.units.gimbal_angle),
             bound_rad: estimate.bound_rad.to_f64(self.units.gimbal_angle),
             disturbance_torque_nm: estimate.disturbance_torque_nm.to_f64(self.units.motor_torque),
-            innovation_rad: estimate.innovation_rad.to_f64(self.units.gyro_angle),
+            innovation_rad: estimate.innovation_rad.to_f64(self.gyro),
             flags: estimate.flags,
         }
     }
