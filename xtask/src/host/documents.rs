@@ -22,7 +22,7 @@ struct Message {
 }
 
 /// Units of one word; rustdoc takes nothing with a space or a slash for a link.
-const UNITS: [&str; 22] = [
+const UNITS: &[&str] = &[
     "s",
     "ms",
     "us",
@@ -33,6 +33,8 @@ const UNITS: [&str; 22] = [
     "kg",
     "K",
     "N",
+    "W",
+    "J",
     "Hz",
     "g",
     "rpm",
@@ -40,6 +42,8 @@ const UNITS: [&str; 22] = [
     "lbf",
     "percent",
     "bytes",
+    "pixels",
+    "rows",
     "instructions",
 ];
 
