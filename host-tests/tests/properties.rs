@@ -230,20 +230,19 @@ fn closed_form_an_input_beyond_its_range_is_clamped_and_told() {
             assert_eq!(bits_of::<f32>(&config, &row), expected, "{row:?}");
             assert_eq!(bits_of::<Fixed>(&config, &row), expected, "{row:?}");
         }
-        // Not a number, and without end: f32 alone can carry them into the step.
+        // Not a number, and without end.
         for absurd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let mut row = Row::default();
             set(&mut row, absurd);
             assert_eq!(bits_of::<f32>(&config, &row), Faults::INPUT_NOT_FINITE, "{row:?}");
+            assert_eq!(bits_of::<Fixed>(&config, &row), Faults::INPUT_NOT_FINITE, "{row:?}");
         }
     }
 }
 
-/// The last good row goes on acting: a run with holes is the run with the row before repeated.
-#[test]
-fn closed_form_a_row_that_is_not_a_number_repeats_the_last_good_one() {
+fn skips_holes<N: Number>() {
     let config = Config::consistent();
-    let (mut holed, mut repeated) = (Axis::<f32>::new(&config).unwrap(), Axis::<f32>::new(&config).unwrap());
+    let (mut holed, mut repeated) = (Axis::<N>::new(&config).unwrap(), Axis::<N>::new(&config).unwrap());
     let rows = manoeuvre(0.5, 1e-3, 9);
     let mut last = rows[0];
     for (k, row) in rows.iter().enumerate() {
@@ -264,6 +263,13 @@ fn closed_form_a_row_that_is_not_a_number_repeats_the_last_good_one() {
         assert_eq!(seen.gimbal_angle_rad.to_bits(), told.gimbal_angle_rad.to_bits(), "row {k}");
         assert_eq!(seen.faults.contains(Faults::INPUT_NOT_FINITE), hole, "row {k}");
     }
+}
+
+/// The last good row goes on acting: a run with holes is the run with the row before repeated.
+#[test]
+fn closed_form_a_row_that_is_not_a_number_repeats_the_last_good_one() {
+    skips_holes::<f32>();
+    skips_holes::<Fixed>();
 }
 
 /// `A_r` of 64 and 70 g from components inside their ranges: beyond the tables, which are read at their end.
