@@ -3,10 +3,16 @@
 #![forbid(unsafe_code)]
 
 mod compensator;
+pub mod corpus;
+pub mod detect;
 mod draw;
+pub mod effects;
+pub mod excitation;
 mod machine;
 mod memory;
 mod palmgren;
+pub mod scene;
+pub mod sensors;
 mod track;
 pub mod truth;
 

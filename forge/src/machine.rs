@@ -271,6 +271,7 @@ impl<'a> Machine<'a> {
         Path {
             moved_rad: states[RELATIVE] - self.states[RELATIVE],
             time_s,
+            rate_radps: rate,
             curve: (rate / slip_radps).clamp(-1.0, 1.0),
             slip_radps,
         }

@@ -1,6 +1,6 @@
 //! Parts of the true plant that remember the path of the relative angle.
 //!
-//! Each is advanced exactly, or by an implicit midpoint, over the displacement since the last committed step; none
+//! Each is advanced exactly over the displacement since the last committed step; none
 //! of them is a differential equation for the integrator, so none is stiff.
 //!
 //! ```text
@@ -24,6 +24,8 @@ pub(crate) struct Memory {
     /// Side of the snapping spring.
     pub(crate) side: f64,
     brush: f64,
+    /// Relative rate when the memory was committed [rad/s].
+    rate_radps: f64,
 }
 
 /// Where the relative angle goes within a step.
@@ -33,6 +35,8 @@ pub(crate) struct Path {
     pub(crate) moved_rad: f64,
     /// Time since then [s].
     pub(crate) time_s: f64,
+    /// Relative rate now [rad/s].
+    pub(crate) rate_radps: f64,
     /// The nominal friction curve now, -1 to 1.
     pub(crate) curve: f64,
     /// Half width of that curve [rad/s].
@@ -43,9 +47,17 @@ fn bristle(before: f64, displacement: f64, path: Path) -> f64 {
     path.curve + (before - path.curve) * libm::exp(-path.moved_rad.abs() / displacement)
 }
 
-fn maxwell(before: f64, displacement: f64, path: Path) -> f64 {
-    let half = 0.5 * path.time_s * path.slip_radps / displacement;
-    ((before * (1.0 - half) + path.moved_rad / displacement) / (1.0 + half)).clamp(-1.0, 1.0)
+/// Exact for a rate that runs along a line.
+fn maxwell(before: f64, displacement: f64, rate_before: f64, path: Path) -> f64 {
+    let stiffness = path.time_s * path.slip_radps / displacement;
+    if stiffness < 1e-3 {
+        let moved = before + 0.5 * path.time_s * (rate_before + path.rate_radps) / displacement;
+        return (moved - stiffness * before).clamp(-1.0, 1.0);
+    }
+    let left = libm::exp(-stiffness);
+    let mean = (1.0 - left) / stiffness;
+    let now = path.rate_radps / path.slip_radps * (1.0 - mean);
+    (before * left + now + rate_before / path.slip_radps * (mean - left)).clamp(-1.0, 1.0)
 }
 
 fn stop(before: f64, displacement: f64, path: Path) -> f64 {
@@ -66,6 +78,7 @@ impl Memory {
             cable: vec![0.0; truth.torque.hysteresis.len()],
             side: 1.0,
             brush: 0.0,
+            rate_radps: 0.0,
         }
     }
 
@@ -78,7 +91,7 @@ impl Memory {
             Some(Presliding::MaxwellSlip(elements)) => elements
                 .iter()
                 .zip(&self.presliding)
-                .map(|((displacement, weight), before)| weight * maxwell(*before, *displacement, path))
+                .map(|((displacement, weight), before)| weight * maxwell(*before, *displacement, self.rate_radps, path))
                 .sum(),
         }
     }
@@ -107,11 +120,13 @@ impl Memory {
                 self.presliding[0] = bristle(self.presliding[0], *displacement, path);
             }
             Some(Presliding::MaxwellSlip(elements)) => {
+                let rate_before = self.rate_radps;
                 for (before, (displacement, _)) in self.presliding.iter_mut().zip(elements) {
-                    *before = maxwell(*before, *displacement, path);
+                    *before = maxwell(*before, *displacement, rate_before, path);
                 }
             }
         }
+        self.rate_radps = path.rate_radps;
         for (before, (displacement, _)) in self.cable.iter_mut().zip(&truth.torque.hysteresis) {
             *before = stop(*before, *displacement, path);
         }

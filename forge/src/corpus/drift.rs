@@ -1,0 +1,110 @@
+//! Where the true parameters lie within the tolerance of the nominal ones.
+
+use std::collections::BTreeMap;
+
+use gimbal_servo::Config;
+use serde::{Deserialize, Serialize};
+
+use crate::draw::Draw;
+use crate::effects::World;
+use crate::sensors::Sensors;
+use crate::truth::Truth;
+
+/// Default tolerance of a nominal parameter, relative.
+pub(super) const DEFAULT: f64 = 0.03;
+/// Tolerance of the load friction, relative: the paper's own scatter.
+pub(super) const FRICTION_LEVEL: f64 = 0.15;
+/// Largest turn of an accelerometer [rad].
+const MISALIGNMENT_RAD: f64 = 5e-4;
+
+/// Nominal parameters that drift, by the effect that a shift beyond tolerance is; the unbalance has two components,
+/// and a turn of the accelerometers about z comes beside.
+pub(super) const NAMES: [&str; 12] = [
+    "friction_level",
+    "viscous_friction",
+    "loop_gain",
+    "motor_lag",
+    "gyro_damping",
+    "angular_momentum",
+    "gimbal_inertia",
+    "stop_angle",
+    "pickoff_scale",
+    "torque_scale",
+    "mass_unbalance",
+    "mass_unbalance_y",
+];
+
+/// Name of the turn of the accelerometers.
+pub(super) const TURN: &str = "accelerometer_turn";
+
+/// Relative drift by name, and the turns of the accelerometers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Drift {
+    /// Relative change by name.
+    pub relative: BTreeMap<String, f64>,
+    /// Turns of the accelerometers about x, y, z [rad].
+    pub misalignment_rad: [f64; 3],
+}
+
+/// Largest drift to either side of one name.
+pub(super) fn tolerance(name: &str) -> f64 {
+    match name {
+        "friction_level" => FRICTION_LEVEL,
+        TURN => MISALIGNMENT_RAD,
+        _ => DEFAULT,
+    }
+}
+
+impl Drift {
+    /// Draws all drifts; those that an effect of the log shifts stay at zero.
+    pub(super) fn draw(draw: &mut Draw, shifted: &[&str]) -> Self {
+        let relative = NAMES
+            .iter()
+            .map(|name| {
+                let value = 0.5 * tolerance(name) * draw.normal_within(2.0);
+                let own = shifted.iter().any(|effect| name.starts_with(effect));
+                ((*name).to_owned(), if own { 0.0 } else { value })
+            })
+            .collect();
+        let misalignment_rad = core::array::from_fn(|_| 0.5 * MISALIGNMENT_RAD * draw.normal_within(2.0));
+        Self { relative, misalignment_rad }
+    }
+
+    pub(super) fn of(&self, name: &str) -> f64 {
+        if name == TURN { self.misalignment_rad[2] } else { self.relative.get(name).copied().unwrap_or(0.0) }
+    }
+
+    /// The drifted world of a nominal configuration.
+    pub(super) fn world(&self, nominal: &Config) -> World {
+        let mut world = World { truth: Truth::new(nominal), sensors: Sensors::default() };
+        world.sensors.misalignment_rad = self.misalignment_rad;
+        for name in NAMES {
+            shift(&mut world, nominal, name, self.of(name));
+        }
+        world
+    }
+}
+
+/// Adds a relative change of one nominal parameter to a world.
+pub(super) fn shift(world: &mut World, nominal: &Config, name: &str, change: f64) {
+    let World { truth, sensors } = world;
+    let unbalance = libm::hypot(nominal.unbalance.x_kg_m, nominal.unbalance.y_kg_m);
+    match name {
+        "friction_level" => truth.friction.load_change += change,
+        "viscous_friction" => truth.friction.viscous_change += change,
+        "mass_unbalance" => truth.torque.unbalance_kg_m[0] += change * unbalance,
+        "mass_unbalance_y" => truth.torque.unbalance_kg_m[1] += change * unbalance,
+        "loop_gain" => truth.config.servo.gain_nm_per_rad_s += change * nominal.servo.gain_nm_per_rad_s,
+        "motor_lag" => truth.config.servo.motor_lag_s += change * nominal.servo.motor_lag_s,
+        "gyro_damping" => truth.config.gyro.damping_nm_s_per_rad += change * nominal.gyro.damping_nm_s_per_rad,
+        "angular_momentum" => truth.config.gyro.angular_momentum_nm_s += change * nominal.gyro.angular_momentum_nm_s,
+        "stop_angle" => truth.config.gyro.stop_angle_rad += change * nominal.gyro.stop_angle_rad,
+        "gimbal_inertia" => {
+            truth.config.servo.gimbal_inertia_kg_m2 += change * nominal.servo.gimbal_inertia_kg_m2;
+        }
+        "pickoff_scale" => sensors.pickoff_scale += change,
+        "torque_scale" => sensors.torque_scale += change,
+        TURN => sensors.misalignment_rad[2] += change,
+        _ => {}
+    }
+}

@@ -1,0 +1,191 @@
+//! Sizes of effects on one scene: detectable size, what nuisances and other effects take, who cannot be told apart.
+
+use gimbal_servo::Config;
+
+use super::drift::{self, Drift, NAMES, TURN};
+use crate::detect::{DETECTABLE, Nuisance, Projection, Whitener};
+use crate::draw::Draw;
+use crate::effects::{Effect, Scale, World, library_names};
+use crate::scene::{Outputs, Scene};
+use crate::sensors::Noise;
+use crate::track::Track;
+
+/// Integration steps between rows where only differences count.
+pub(super) const STEPS: usize = 8;
+/// Share of a tolerance over which a sensitivity is taken.
+const SENSITIVITY_SHARE: f64 = 0.3;
+
+/// A scene with its undisturbed run, noise floor and sensitivities.
+pub(super) struct Bench<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) base: &'a World,
+    pub(super) scale: Scale,
+    outputs: Outputs,
+    /// The undisturbed plant driven by its own logged inputs.
+    logged: Option<Outputs>,
+    whitener: Whitener,
+    nuisances: Vec<Nuisance>,
+}
+
+fn plus(a: &Outputs, b: &Outputs, sign: f64) -> Outputs {
+    core::array::from_fn(|channel| a[channel].iter().zip(&b[channel]).map(|(x, y)| x + sign * y).collect())
+}
+
+impl<'a> Bench<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        base: &'a World,
+        nominal: &Config,
+        drift: &Drift,
+        noise: &Noise,
+        used: &[usize],
+        draw: &mut Draw,
+    ) -> Self {
+        let run = |world: &World, track: &Track| scene.run(&world.truth, track, STEPS);
+        let samples = run(base, &scene.track);
+        let outputs = Scene::outputs(base, &samples);
+        let carried = Scene::outputs(base, &run(base, &noise.on_inputs(&scene.track, draw)));
+        let (rows, period_s) = (scene.rows(), scene.track.period_s);
+        let measured: Outputs = [noise.gyro_angle_rad, noise.motor_torque_nm, noise.gimbal_angle_rad]
+            .map(|white| noise.series(white, rows, period_s, draw));
+        let floor = plus(&plus(&carried, &outputs, -1.0), &measured, 1.0);
+        let whitener = Whitener::new(&floor, used, period_s);
+        let mut bench =
+            Self { scene, base, scale: scene.scale(&samples), outputs, logged: None, whitener, nuisances: Vec::new() };
+        bench.logged = Some(Scene::outputs(base, &run(base, &base.sensors.logged(&scene.track))));
+        for name in NAMES.into_iter().chain([TURN]) {
+            // a stop that is never touched has no sensitivity
+            if name == "stop_angle" && !samples.iter().any(|sample| sample.on_stop) {
+                continue;
+            }
+            let tolerance = drift::tolerance(name);
+            let step = SENSITIVITY_SHARE * tolerance;
+            let mut world = base.clone();
+            drift::shift(&mut world, nominal, name, step);
+            let mut column = bench.difference(&world);
+            for value in &mut column {
+                *value /= step;
+            }
+            let now = drift.of(name);
+            bench.nuisances.push(Nuisance { column, limits: (-tolerance - now, tolerance - now), name });
+        }
+        bench
+    }
+
+    /// What a world shows against its own logged inputs, as far as the undisturbed plant does not show it too.
+    fn seen(&self, world: &World) -> Outputs {
+        let samples = self.scene.run(&world.truth, &self.scene.track, STEPS);
+        let shown = Scene::outputs(world, &samples);
+        match &self.logged {
+            Some(logged)
+                if world.sensors.skew_s.to_bits() != self.base.sensors.skew_s.to_bits()
+                    || world.sensors.misalignment_rad[2].to_bits()
+                        != self.base.sensors.misalignment_rad[2].to_bits() =>
+            {
+                let track = world.sensors.logged(&self.scene.track);
+                let other = Scene::outputs(self.base, &self.scene.run(&self.base.truth, &track, STEPS));
+                plus(&shown, &plus(&other, logged, -1.0), -1.0)
+            }
+            _ => shown,
+        }
+    }
+
+    /// Whitened difference of a world from the undisturbed one.
+    pub(super) fn difference(&self, world: &World) -> Vec<f64> {
+        self.whitener.difference(&self.seen(world), &self.outputs)
+    }
+
+    /// Whitened difference of two worlds.
+    pub(super) fn between(&self, with: &World, without: &World) -> Vec<f64> {
+        self.whitener.difference(&self.seen(with), &self.seen(without))
+    }
+
+    /// The undisturbed world with one effect.
+    pub(super) fn world(&self, effect: &Effect, size: f64) -> World {
+        let mut world = self.base.clone();
+        effect.apply(size, &self.scale, &mut world);
+        world
+    }
+
+    /// Everything that the nominal model may do inside its tolerance.
+    pub(super) fn projection(&self) -> Projection<'_> {
+        Projection::new(self.nuisances.iter().collect())
+    }
+
+    /// Whether a world still works: the loop holds and the gyro is not on its stop much more than without.
+    pub(super) fn works(&self, world: &World) -> bool {
+        let power = |outputs: &Outputs, channel: usize| outputs[channel].iter().map(|v| v * v).sum::<f64>();
+        let shown = self.seen(world);
+        let grown = |channel: usize| power(&shown, channel) / power(&self.outputs, channel).max(1e-30);
+        shown.iter().flatten().all(|value| value.is_finite() && value.abs() < 2.0) && grown(0) < 400.0
+    }
+
+    fn d_of(&self, effect: &Effect, size: f64, projection: &Projection<'_>) -> f64 {
+        let left = projection.left_of(&self.difference(&self.world(effect, size)));
+        if left.is_finite() { left } else { f64::INFINITY }
+    }
+
+    /// Size with d = 5, if there is one in the range that makes sense.
+    pub(super) fn detectable_size(&self, effect: &Effect, projection: &Projection<'_>) -> Option<f64> {
+        let range = effect.range();
+        let mut size = range.small;
+        let mut d = self.d_of(effect, size, projection);
+        let (mut low, mut high) = (None, None);
+        for _ in 0..14 {
+            if d < DETECTABLE {
+                low = Some((size, d));
+            } else {
+                high = Some((size, d));
+            }
+            let next = match (low, high) {
+                (Some((size, d)), None) if size < range.largest => {
+                    let factor = if d > 0.5 { (1.3 * DETECTABLE / d).clamp(1.4, 6.0) } else { 6.0 };
+                    (size * factor).min(range.largest)
+                }
+                (_, None) => return None,
+                (None, Some((size, d))) => size * (0.7 * DETECTABLE / d).clamp(1e-3, 0.6),
+                (Some((small, less)), Some((large, more))) => {
+                    if large / small < 1.03 || (more - less).abs() < 0.2 {
+                        break;
+                    }
+                    if less > 0.5 && more.is_finite() {
+                        let part = (DETECTABLE - less) / (more - less);
+                        small + (large - small) * part.clamp(0.05, 0.95)
+                    } else {
+                        (small * large).sqrt()
+                    }
+                }
+            };
+            if next < 1e-4 * range.small {
+                break;
+            }
+            size = next;
+            d = self.d_of(effect, size, projection);
+            if (d - DETECTABLE).abs() < 0.05 {
+                return Some(size);
+            }
+        }
+        match (low, high) {
+            (Some((small, less)), Some((large, more))) => {
+                let part = ((DETECTABLE - less) / (more - less)).clamp(0.0, 1.0);
+                Some(small + (large - small) * if part.is_finite() { part } else { 0.5 })
+            }
+            (None, Some((size, _))) => Some(size),
+            (_, None) => None,
+        }
+    }
+
+    /// Whitened change by a small size of each effect of the table, in its plain shape.
+    pub(super) fn tangents(&self) -> Vec<(&'static str, Vec<f64>)> {
+        library_names()
+            // their changes are not along a line
+            .filter(|name| !matches!(*name, "pickoff_quantisation" | "stop_angle" | "torque_saturation"))
+            .map(|name| {
+                let effect = Effect::plain(name);
+                let column = self.difference(&self.world(&effect, 4.0 * effect.range().small));
+                (name, column)
+            })
+            .filter(|(_, column)| column.iter().map(|value| value * value).sum::<f64>() > 1e-6)
+            .collect()
+    }
+}

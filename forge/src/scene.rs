@@ -1,0 +1,77 @@
+//! A track, where the record begins on it, and what the instruments would show there without noise.
+
+use crate::effects::{Scale, World};
+use crate::machine::{Machine, Sample};
+use crate::track::Track;
+use crate::truth::Truth;
+
+/// Time the platform is given to settle before the first row of a track [s].
+const SETTLE_S: f64 = 1.5;
+
+/// A track with its record.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// True inputs.
+    pub track: Track,
+    /// Rows before the first one of the record.
+    pub before: usize,
+}
+
+/// Names of the channels that can be compared.
+pub const CHANNELS: [&str; 3] = ["gyro_angle_rad", "motor_torque_nm", "gimbal_angle_rad"];
+
+/// One series for each of [`CHANNELS`].
+pub type Outputs = [Vec<f64>; 3];
+
+impl Scene {
+    /// Rows of the record.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.track.rows.len() - self.before
+    }
+
+    /// Runs a platform along the track of the scene, or along another one of the same length.
+    #[must_use]
+    pub fn run(&self, truth: &Truth, track: &Track, steps_per_row: usize) -> Vec<Sample> {
+        let mut machine = Machine::new(truth, track, steps_per_row, -(self.before as f64) * track.period_s);
+        machine.settle(SETTLE_S);
+        for _ in 0..self.before {
+            machine.advance();
+        }
+        machine.zero_record();
+        let rows = self.rows();
+        let mut samples = Vec::with_capacity(rows);
+        samples.push(machine.sample());
+        for _ in 1..rows {
+            machine.advance();
+            samples.push(machine.sample());
+        }
+        samples
+    }
+
+    /// What the instruments show, noise aside.
+    #[must_use]
+    pub fn outputs(world: &World, samples: &[Sample]) -> Outputs {
+        let sensors = &world.sensors;
+        [
+            samples.iter().map(|s| sensors.pickoff_scale * s.gyro_angle_rad + sensors.pickoff_bias_rad).collect(),
+            samples.iter().map(|s| sensors.torque_scale * s.motor_torque_nm + sensors.torque_bias_nm).collect(),
+            samples.iter().map(|s| s.gimbal_angle_rad).collect(),
+        ]
+    }
+
+    /// Sizes by which effects are scaled, from a run without effects.
+    #[must_use]
+    pub fn scale(&self, samples: &[Sample]) -> Scale {
+        let largest = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(|s| of(s).abs()).fold(0.0, f64::max);
+        Scale {
+            torque_nm: largest(&|s| s.motor_torque_nm).max(1e-6),
+            relative_rad: largest(&|s| s.relative_angle_rad),
+            rate_radps: self.track.rows.iter().map(|row| row.rate_radps.abs()).fold(1e-4, f64::max),
+            length_s: self.rows() as f64 * self.track.period_s,
+            rows: self.track.rows.len(),
+            before: self.before,
+            period_s: self.track.period_s,
+        }
+    }
+}
