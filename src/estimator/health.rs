@@ -47,6 +47,8 @@ pub(crate) struct State {
 pub(crate) struct Admitted<N> {
     pub(crate) gyro: Option<N>,
     pub(crate) torque: Option<N>,
+    /// What a jump that has been confirmed would have added to the last period's mean and this one's.
+    pub(crate) catch_up: N,
     /// Rows in a row without theta, this one included.
     pub(crate) gyro_missing: u32,
     /// Whether theta is back after an outage that was too long for the filter to bridge well.
@@ -108,6 +110,7 @@ impl<N: Number> Law<N> {
         measured: &Measured<N>,
         inputs: &[N; INPUTS],
         faults: Faults,
+        zone: N,
     ) -> Admitted<N> {
         let mut flags = Flags::INPUT_WRONG.when(faults.bits() & WRONG != 0);
         let health = &mut memory.health;
@@ -117,12 +120,13 @@ impl<N: Number> Law<N> {
         health.gyro_equal = if equal { health.gyro_equal.saturating_add(1) } else { 0 };
         let stuck = self.stuck_rows > 0 && health.gyro_equal >= self.stuck_rows;
         flags |= Flags::GYRO_STUCK.when(stuck) | Flags::GYRO_MISSING.when(gyro.is_none());
-        let fresh = gyro.filter(|_| self.stuck_rows == 0 || !equal);
+        // On a stop theta stands still: chance is likelier than a fault.
+        let fresh = gyro.filter(|gyro| self.stuck_rows == 0 || !equal || (!stuck && !gyro.within(zone)));
         let before = health.gyro_missing;
         health.gyro_missing = if fresh.is_some() { 0 } else { before.saturating_add(1) };
         flags |= Flags::GYRO_LOST.when(health.gyro_missing > self.bridge_rows);
 
-        let mut torque = None;
+        let (mut torque, mut catch_up) = (None, N::ZERO);
         if self.torque_measured {
             torque = measured.motor_torque_nm.filter(|torque| torque.within(self.torque_range));
             let equal = torque.is_some_and(|torque| torque == memory.torque);
@@ -132,7 +136,14 @@ impl<N: Number> Law<N> {
                 torque.is_some_and(|torque| !(torque - memory.torque).abs().within(N::from_bits(self.torque_jump)));
             // The first row has nothing to jump from.
             let hold = jumped && !health.torque_held && memory.regime != super::state::Regime::New;
+            let confirmed = jumped && health.torque_held;
             health.torque_held = hold;
+            if confirmed {
+                catch_up = memory.torque_waiting - memory.torque;
+            }
+            if let Some(torque) = torque {
+                memory.torque_waiting = torque;
+            }
             torque = torque.filter(|_| !hold && !stuck);
             flags |= Flags::TORQUE_STUCK.when(stuck) | Flags::TORQUE_MISSING.when(torque.is_none() && !stuck);
             health.torque_missing = if torque.is_some() { 0 } else { health.torque_missing.saturating_add(1) };
@@ -143,6 +154,7 @@ impl<N: Number> Law<N> {
         Admitted {
             gyro: fresh,
             torque,
+            catch_up,
             gyro_missing: health.gyro_missing,
             gyro_back: fresh.is_some() && before >= OUTAGE,
             torque_lost: self.torque_measured && torque.is_none(),

@@ -11,6 +11,7 @@ use super::bound::RootSum;
 use super::config::Config;
 use super::filter::Filter;
 use super::law::share;
+use super::release::RATES;
 use crate::number::Number;
 use crate::row::ScaledRow;
 use crate::state::State as ModelState;
@@ -42,8 +43,8 @@ pub(crate) struct State<N: Number> {
     /// The modelled disturbance at the last row and at contact.
     pub(crate) modelled: N,
     pub(crate) first_modelled: N,
-    /// `T_d - T_m` over the last period.
-    pub(crate) net: N,
+    /// phi' at the last rows, the latest first.
+    pub(crate) rates: [N; RATES],
     /// Where theta rests.
     pub(crate) stop: N,
     /// Share of [`TIME_PERIODS`] since contact.
@@ -64,6 +65,8 @@ pub(crate) struct Law<N: Number> {
     pub(crate) rate_share: N::Coef,
     pub(crate) inertia_share: N::Coef,
     model_share: N::Coef,
+    /// What placing the contact within its period leaves of phi'.
+    contact_share: N::Coef,
     /// Noise of phi' and of `T_d` at contact.
     pub(crate) rate_noise: N,
     pub(crate) torque_noise: N,
@@ -86,10 +89,11 @@ impl<N: Number> Law<N> {
             tick: N::quantise(1.0 / TIME_PERIODS, 0),
             rate_share: share::<N>(libm::hypot(tolerance.damping, tolerance.angular_momentum)),
             inertia_share: share::<N>(tolerance.gimbal_inertia),
+            contact_share: share::<N>(0.01),
             model_share: share::<N>(tolerance.friction_level),
             rate_noise: N::quantise(rate_of * filter.deviation(&[0.0, 0.0, 1.0, 0.0]), units.gimbal_rate),
             torque_noise: N::quantise(
-                filter.deviation(&[0.0, 0.0, 0.0, 1.0]) / filter.torque_scale,
+                0.6 * filter.deviation(&[0.0, 0.0, 0.0, 1.0]) / filter.torque_scale,
                 units.motor_torque,
             ),
             torque_shift: (units.motor_torque - units.torque).unsigned_abs(),
@@ -103,10 +107,11 @@ impl<N: Number> Law<N> {
         let mean = (state.modelled.half() + modelled.half()).shift_down(self.torque_shift);
         state.modelled = modelled;
         let net = state.surplus + mean - torque;
-        state.net = net;
         state.coasted = N::confine(state.coasted + self.angle_change.increment(&[state.first_rate, N::ZERO]));
         state.angle = N::confine(state.angle + self.angle_change.increment(&[rate, net]));
         state.rate = N::confine(state.rate + self.rate_change.increment(&[net]));
+        state.rates.copy_within(..RATES - 1, 1);
+        state.rates[0] = N::narrow(state.rate);
         let change = (modelled - state.first_modelled).shift_down(self.torque_shift);
         let doubt = state.first_torque_bound + N::head(self.model_share * change.abs());
         state.torque_bound = state.torque_bound.most(doubt);
@@ -133,7 +138,8 @@ impl<N: Number> Law<N> {
         let coasted = N::narrow(state.coasted);
         let gained = N::narrow(state.angle) - state.first_angle - coasted;
         let gained_rate = N::narrow(state.rate) - state.first_rate;
-        let noise = self.spanned(state, self.rate_noise);
+        let share = N::head(self.contact_share * state.first_rate.abs());
+        let noise = self.spanned(state, self.rate_noise + share);
         let rate_part = N::head(self.rate_share * coasted);
         [
             (rate_part, rate_part),

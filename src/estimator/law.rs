@@ -63,6 +63,8 @@ pub struct Law<N: Number> {
     gate: N,
     /// |theta| from which on a stop may be near.
     zone: N,
+    /// The nominal stop.
+    rest: N,
     /// phi for theta, w, p, d, u.
     seen: Row<N, 5>,
     /// theta at the horizon, likewise.
@@ -72,6 +74,7 @@ pub struct Law<N: Number> {
     noise: N,
     transient_decay: N::Coef,
     transient_gain: N::Coef,
+    level_gain: N::Coef,
     /// Innovations that are plain noise.
     usual: N,
     widest: N,
@@ -82,6 +85,7 @@ pub struct Law<N: Number> {
     settling_rows: u32,
     held: held::Law<N>,
     release: release::Law<N>,
+    contact: Contact<N>,
     /// phi' for p, and for theta's excess at contact.
     rate: ScaledRow<N, 2>,
     /// `H theta'` for w.
@@ -107,6 +111,55 @@ struct Servo<N: Number> {
     decay: [N::Coef; 5],
     lags: [ScaledRow<N, 1>; 5],
     torque: ScaledRow<N, 7>,
+}
+
+/// What the mean of neighbouring samples misses of the motor torque's impulse after a contact, as phi'.
+///
+/// At the contact theta' falls to zero, and the servo answers within a few periods: in the terms of (3), for a theta' of 1
+/// and the contact d periods before a sample,
+///
+/// ```text
+/// T^2 D d (1 - d) / 2 + sum r_i / p_i^2 (T e^(p_i d T) / (1 - e^(p_i T)) + 1 / p_i - T (1/2 - d))
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Contact<N: Number> {
+    powers: [ScaledRow<N, 1>; 3],
+    shift: u32,
+}
+
+impl<N: Number> Contact<N> {
+    fn build(plant: &Plant, units: &Units, scale: i32, gyro: i32, period: f64) -> Self {
+        let at = |d: f64| {
+            let lags = plant.lags.iter().zip(&plant.lag_gains).map(|(p, gain)| {
+                let x = p * period;
+                gain / p * (-period * libm::exp(x * d) / libm::expm1(x) + 1.0 / p - period * (0.5 - d))
+            });
+            let sum = 0.5 * period * period * plant.direct_gain() * d * (1.0 - d) + lags.sum::<f64>();
+            sum / (period * plant.gimbal_inertia)
+        };
+        let (start, middle, end) = (at(0.0), at(0.5), at(1.0));
+        let square = 2.0 * (start + end) - 4.0 * middle;
+        let powers = [start, end - start - square, square];
+        Self {
+            powers: powers.map(|power| ScaledRow::build([power], [scale], units.gimbal_rate)),
+            shift: (scale - gyro).unsigned_abs(),
+        }
+    }
+
+    /// For w at contact, and theta's excess over the stop, mirrored.
+    fn increment(&self, w: N, excess: N, side: Side) -> N::Wide {
+        let speed = side.mirror(w);
+        if speed <= N::ZERO {
+            return N::Wide::default();
+        }
+        let mut excess = excess.shift_down(self.shift);
+        if excess > speed {
+            excess = excess - speed;
+        }
+        let part = excess.least(speed).ratio(speed);
+        let [a, b, c] = &self.powers;
+        a.increment(&[w]) + b.increment(&[w.times(part)]) + c.increment(&[w.times(part).times(part)])
+    }
 }
 
 /// A share of something, as a factor.
@@ -138,7 +191,7 @@ impl<N: Number> Law<N> {
         let seen_gain: f64 = now.iter().zip(&filter.gain).map(|(row, gain)| row * gain).sum();
         let read = libm::hypot(config.sensors.gyro_noise_rad, config.sensors.gyro_step_rad / libm::sqrt(12.0));
         let angle = |value: f64| N::quantise(value, gyro);
-        let zone = stop * (1.0 - 3.0 * tolerance.stop_angle) - 6.0 * filter.innovation_rad;
+        let zone = stop * (1.0 - 5.0 * tolerance.stop_angle) - 6.0 * filter.innovation_rad;
         let seen_noise = filter.deviation(&[now[0], now[1], now[2], now[3]]);
         let rate_noise = filter.ratio / period * filter.deviation(&[0.0, 0.0, 1.0, 0.0]);
         // phi from a rate that is uncertain, and from a torque that may have come.
@@ -153,14 +206,16 @@ impl<N: Number> Law<N> {
             shift: shift.unsigned_abs(),
             gate: angle(40.0 * filter.innovation_rad),
             zone: angle(zone),
+            rest: angle(stop),
             seen: Row::build(seen, signals, units.gimbal_angle),
             ahead: Row::build(ahead.map(|x| 0.25 * x), signals, scale),
             stop: N::quantise(0.25 * stop, scale),
             ratio_share: share::<N>(libm::hypot(tolerance.damping, tolerance.angular_momentum)),
             noise: N::quantise(seen_noise, units.gimbal_angle),
+            level_gain: N::coef(1.0 / 16.0),
             // The filter forgets an innovation at about the pace at which it takes d in.
-            transient_decay: N::coef(0.9),
-            transient_gain: N::coef(N::rescaled(seen_gain, gyro - units.gimbal_angle)),
+            transient_decay: N::coef(0.92),
+            transient_gain: N::coef(N::rescaled(1.6 * seen_gain, gyro - units.gimbal_angle)),
             usual: angle(2.5 * filter.innovation_rad),
             widest: N::quantise(config.widest_bound_rad, units.gimbal_angle),
             root_sum: RootSum::build(),
@@ -170,6 +225,7 @@ impl<N: Number> Law<N> {
             settling_rows: 40,
             held: held::Law::build(config, axis, units, filter),
             release: release::Law::build(axis, units, scale),
+            contact: Contact::build(&Plant::new(axis), units, scale, gyro, period),
             rate: ScaledRow::build([filter.ratio / period, h / jg], [scale, gyro], units.gimbal_rate),
             coupling: ScaledRow::build([h / period], [scale], torque),
             load: ScaledRow::build([filter.torque_scale], [torque], scale),
@@ -285,9 +341,14 @@ impl<N: Number> Law<N> {
             *x = *x + *gain * innovation;
         }
         let excess = innovation.abs() - self.usual;
-        let transient = N::head(self.transient_decay * state.transient);
-        state.transient =
-            if excess > N::ZERO { transient.most(N::head(self.transient_gain * excess)) } else { transient };
+        let d = N::head(state.filter[3]);
+        state.transient = N::head(self.transient_decay * state.transient);
+        if excess > N::ZERO {
+            state.transient = state.transient.most(N::head(self.transient_gain * excess));
+            state.level = d;
+        } else {
+            state.level = state.level + N::head(self.level_gain * (d - state.level));
+        }
     }
 
     /// phi, its bound and the INS sums, the gyro free.
@@ -343,11 +404,11 @@ impl<N: Number> Law<N> {
         model: &ModelState<N>,
         faults: Faults,
     ) -> Estimate<N> {
-        let admitted = self.health.admit(state, measured, inputs, faults);
+        let admitted = self.health.admit(state, measured, inputs, faults, self.zone);
         let previous = state.torque;
         let mut mean = previous;
         if let Some(torque) = admitted.torque {
-            mean = previous.half() + torque.half();
+            mean = previous.half() + torque.half() + admitted.catch_up;
             state.torque = torque;
         }
         let last_gyro = state.gyro;
@@ -404,8 +465,8 @@ impl<N: Number> Law<N> {
             }
             let predicted = N::head(state.filter[0]).shift_up(self.shift);
             return match side_beyond(predicted, self.zone) {
-                Some(side) if rows > 1 && !predicted.within(self.stop_angle()) => {
-                    self.meet_stop(state, side, predicted, axis, model, flags)
+                Some(side) if rows > 1 && !predicted.within(self.rest) => {
+                    self.meet_stop(state, side, side.mirror(self.rest), axis, model, flags)
                 }
                 _ => self.finish(state, N::ZERO, flags),
             };
@@ -413,14 +474,19 @@ impl<N: Number> Law<N> {
         let innovation = self.predict(state, gyro, mean);
         if let Some(side) = side_beyond(gyro, self.zone) {
             let deficit = -side.mirror(innovation);
-            let usual = if settling { self.usual + self.usual } else { self.usual };
-            state.outward = (state.outward + deficit - usual).most(N::ZERO);
-            if state.outward > usual {
-                state.outward = N::ZERO;
+            let least = if settling { self.usual + self.usual } else { self.usual };
+            let [_, w, ..] = state.filter.map(N::head);
+            let moved = side.mirror(gyro - last_gyro).shift_down(self.shift);
+            let stopped = moved < side.mirror(w).half();
+            if deficit > least && (stopped || state.postponed) {
+                state.postponed = false;
                 return self.meet_stop(state, side, gyro, axis, model, flags);
             }
-        } else {
-            state.outward = N::ZERO;
+            // A stop may hold theta back: the filter must not learn from it before that is decided.
+            state.postponed = deficit + deficit > self.usual && !settling && !state.postponed;
+            if state.postponed {
+                return self.finish(state, innovation, flags);
+            }
         }
         if admitted.gyro_back {
             // Where theta is and how fast it moves is all that is known after an outage.
@@ -447,10 +513,6 @@ impl<N: Number> Law<N> {
         }
     }
 
-    fn stop_angle(&self) -> N {
-        self.zone
-    }
-
     /// The filter has run on beyond the stop by what theta is short of it.
     fn meet_stop(
         &self,
@@ -466,16 +528,18 @@ impl<N: Number> Law<N> {
         let excess = if side.mirror(excess) > N::ZERO { excess } else { N::ZERO };
         let seen = self.seen.increment(&[theta, w, p, d, state.torque]);
         let angle = state.offset + seen;
-        let rate = self.rate.increment(&[p, excess]);
-        let torque = self.torque.times(d);
+        let rate = self.rate.increment(&[p, excess]) - self.contact.increment(w, side.mirror(excess), side);
+        let torque = self.torque.times(state.level);
+        let moved = self.torque.times(d - state.level).half();
         let modelled = self.held.modelled(axis, model, N::narrow(rate));
         let coupling = N::head(self.held.rate_share * self.coupling.times(w).abs());
         let noise = self.root_sum.of(self.noise + state.transient, state.offset_bound);
         let seen_doubt = N::head(self.ratio_share * N::narrow(seen).abs());
-        let torque_bound = self.root_sum.of(self.held.torque_noise, coupling);
+        let torque_bound = self.root_sum.of_all(&[self.held.torque_noise, coupling, moved]);
         state.held = held::State {
             angle,
             rate,
+            rates: [N::narrow(rate); release::RATES],
             first_angle: N::narrow(angle),
             first_rate: N::narrow(rate),
             first_bound: self.root_sum.of(noise, seen_doubt),
@@ -504,10 +568,15 @@ impl<N: Number> Law<N> {
         self.held.advance(&mut state.held, axis, model, mean);
         if let Some(gyro) = admitted.gyro {
             let fallen = side.mirror(state.held.stop - gyro);
-            if fallen > self.fallen {
+            if fallen > self.fallen && !(admitted.gyro_back && !gyro.within(self.zone)) {
                 return self.leave_stop(state, side, gyro, fallen, admitted.flags);
             }
-            state.held.stop = state.held.stop - side.mirror(fallen).half().half().half();
+            let outward = fallen < -self.fallen || admitted.gyro_back;
+            // theta that still moves takes H theta' from the balance.
+            let follow = if outward { fallen } else { fallen.half().half().half() };
+            let follow = side.mirror(follow);
+            state.held.stop = state.held.stop - follow;
+            state.held.rate = state.held.rate + self.rate.increment(&[N::ZERO, follow]);
         }
         self.finish_held(state, admitted.flags)
     }
@@ -522,14 +591,12 @@ impl<N: Number> Law<N> {
 
     fn leave_stop(&self, state: &mut State<N>, side: Side, gyro: N, fallen: N, flags: Flags) -> Estimate<N> {
         let held = state.held;
-        let pull = -side.mirror(self.held.rate_change.at(&[held.net]));
-        let fall = self.release.fall(fallen.shift_down(self.shift), pull);
-        let rate = N::narrow(held.rate) + side.mirror(fall.rate);
-        let excess = self.held.spanned(&held, rate);
-        let reading = self.held.spanned(&held, fall.rate_bound);
+        let fall = self.release.fall(fallen.shift_down(self.shift), &held.rates.map(|rate| side.mirror(rate)));
+        let excess = self.held.spanned(&held, side.mirror(fall.excess));
+        let reading = self.held.spanned(&held, fall.excess_bound);
         let Correction { angle, bound } = release::Law::correction(&self.held, &held, &self.root_sum, excess, reading);
-        let p = self.release.rate.times(fall.rate);
-        self.place(state, gyro, -side.mirror(fall.slope), -side.mirror(p));
+        let p = self.release.rate.at(&[N::narrow(held.rate) - side.mirror(fall.excess)]);
+        self.place(state, gyro, side.mirror(fall.slope), p);
         let torque = held.surplus + held.modelled.shift_down(self.held.torque_shift);
         state.filter[3] = self.load.increment(&[torque]);
         let [theta, w, p, d] = state.filter.map(N::head);

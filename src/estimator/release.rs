@@ -1,14 +1,11 @@
 //! What is known when theta leaves its stop.
 //!
-//! At the release phi' is zero. From there on phi' falls with the net torque, `phi' = -a t`, and theta with it:
-//!
-//! ```text
-//! theta' = -(H a / Bo) (t - (1 - e^(-l t)) / l)      theta = stop - (H a / Bo) (t^2 / 2 - t / l + (1 - e^(-l t)) / l^2)
-//! ```
-//!
-//! The release is seen once theta has fallen by more than noise; how long ago it was follows from how far it has
-//! fallen. The balance's phi' less this one is the sum of all errors of phi' since contact; phi is corrected by as much as
-//! these errors, each with its uncertainty, have moved phi for it.
+//! At the release phi' is zero. From there on the float follows phi', `w' = l (p - w)`, `theta' = w`, and phi' follows the
+//! net torque, which the balance knows to its own error: `phi'(t) - phi'(release)` is right where phi' is not. The release
+//! is seen once theta has fallen by more than noise. For each number of periods that may have passed since, the fall
+//! is reckoned from the balance's last rates; the one that fits places the release, and the balance's phi' there is the
+//! sum of all errors of phi' since contact. phi is corrected by as much as these errors, each with its uncertainty, have
+//! moved phi for it.
 
 use super::bound::RootSum;
 use super::held;
@@ -16,31 +13,29 @@ use crate::number::Number;
 use crate::row::ScaledRow;
 use crate::units::Units;
 
-/// Longest time between a release and its being seen, in periods.
-const PERIODS: usize = 24;
-/// When the balance says that nothing pulls the float off, it left this long ago, in periods.
-const USUAL: usize = 5;
+/// Rates that the balance remembers: the longest time between a release and its being seen, in periods.
+pub(crate) const RATES: usize = 12;
+/// When the balance has nothing that pulls the float off, it left this long ago, in periods.
+const USUAL: usize = 4;
 
-/// theta and w that a fall of phi' has made, for each number of periods.
+/// The float's way off its stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law<N: Number> {
-    /// theta for the change of phi' over a period.
-    fall: [ScaledRow<N, 1>; PERIODS],
-    /// The change of phi' over a period for theta, at [`USUAL`].
-    usual: ScaledRow<N, 1>,
-    /// w likewise.
-    slope: [ScaledRow<N, 1>; PERIODS],
     /// p for phi'.
     pub(crate) rate: ScaledRow<N, 1>,
+    /// `e^(-l)` and 1 less that.
+    keep: N::Coef,
+    take: N::Coef,
 }
 
-/// The fall since release, mirrored to the positive stop.
+/// Where the release was, and what theta and phi' have done since.
+#[derive(Clone, Copy)]
 pub(crate) struct Fall<N> {
-    /// -phi' now.
-    pub(crate) rate: N,
+    /// The balance's phi' at the release.
+    pub(crate) excess: N,
     /// Its uncertainty.
-    pub(crate) rate_bound: N,
-    /// -w now.
+    pub(crate) excess_bound: N,
+    /// w now.
     pub(crate) slope: N,
 }
 
@@ -57,49 +52,47 @@ impl<N: Number> Law<N> {
         let period = axis.period_s;
         let (bo, jo, h) =
             (axis.gyro.damping_nm_s_per_rad, axis.gyro.float_inertia_kg_m2, axis.gyro.angular_momentum_nm_s);
-        let lambda = bo / jo;
-        // The rate changes by 1 over a period: a = 1 / T.
-        let gain = h / (bo * period);
-        let fall = |periods: usize| {
-            let t = (periods + 1) as f64 * period;
-            gain * (0.5 * t * t - t / lambda - libm::expm1(-lambda * t) / (lambda * lambda))
-        };
-        let slope = |periods: usize| {
-            let t = (periods + 1) as f64 * period;
-            gain * period * (t + libm::expm1(-lambda * t) / lambda)
-        };
+        let change = libm::expm1(-bo / jo * period);
         Self {
-            fall: core::array::from_fn(|i| ScaledRow::build([fall(i)], [units.gimbal_rate], filter_scale)),
-            usual: ScaledRow::build([1.0 / fall(USUAL - 1)], [filter_scale], units.gimbal_rate),
-            slope: core::array::from_fn(|i| ScaledRow::build([slope(i)], [units.gimbal_rate], filter_scale)),
             rate: ScaledRow::build([period * h / bo], [units.gimbal_rate], filter_scale),
+            keep: N::coef(1.0 + change),
+            take: N::coef(-change),
         }
     }
 
-    /// From how far theta has fallen, and how much phi' falls in a period.
-    pub(crate) fn fall(&self, fallen: N, rate_change: N) -> Fall<N> {
-        let (mut rate, mut last, mut last_slope) = (N::ZERO, N::ZERO, N::ZERO);
-        if rate_change > N::ZERO {
-            for (fall, slope) in self.fall.iter().zip(&self.slope) {
-                let (now, now_slope) = (fall.at(&[rate_change]), slope.at(&[rate_change]));
-                if now >= fallen {
-                    let part = (fallen - last).ratio(now - last);
-                    return Fall {
-                        rate: rate + rate_change.times(part),
-                        rate_bound: rate_change,
-                        slope: last_slope + (now_slope - last_slope).times(part),
-                    };
-                }
-                rate = rate + rate_change;
-                (last, last_slope) = (now, now_slope);
+    /// From how far theta has fallen and the balance's last rates, the latest first, all mirrored to the positive stop.
+    pub(crate) fn fall(&self, fallen: N, rates: &[N; RATES]) -> Fall<N> {
+        let [latest, before, ..] = *rates;
+        let (mut last, mut last_rate) = ((N::ZERO, N::ZERO), latest);
+        for periods in 1..RATES {
+            let rate = rates[periods];
+            let (theta, w) = self.follow(&rates[..=periods], rate);
+            if -theta >= fallen {
+                let part = (fallen + last.0).ratio(last.0 - theta);
+                let step = (last_rate - rate).abs();
+                return Fall {
+                    excess: last_rate + (rate - last_rate).times(part),
+                    excess_bound: step.half() + (latest - before).abs().half().half(),
+                    slope: last.1 + (w - last.1).times(part),
+                };
             }
+            (last, last_rate) = ((theta, w), rate);
         }
-        let change = self.usual.at(&[fallen]);
-        let mut rate = N::ZERO;
-        for _ in 0..USUAL {
-            rate = rate + change;
+        // The disturbance has changed on the stop: the balance says nothing of the release.
+        let excess = rates[USUAL];
+        Fall { excess, excess_bound: (excess - latest).abs() + excess.abs().half().half(), slope: -fallen.half() }
+    }
+
+    /// theta and w that the rates, the latest first, have made since the rate was `from`.
+    fn follow(&self, rates: &[N], from: N) -> (N, N) {
+        let (mut theta, mut w, mut p) = (N::ZERO, N::ZERO, N::ZERO);
+        for rate in rates.iter().rev().skip(1) {
+            let now = self.rate.at(&[*rate - from]);
+            let next = N::head(self.keep * w + self.take * (p.half() + now.half()));
+            theta = theta + w.half() + next.half();
+            (w, p) = (next, now);
         }
-        Fall { rate, rate_bound: rate, slope: self.slope[USUAL - 1].at(&[change]) }
+        (theta, w)
     }
 
     /// The correction for an error `excess` of phi' times the time since contact, measured to `reading`.

@@ -14,10 +14,14 @@ pub struct State<N: Number> {
     pub(crate) filter: [N::Wide; STATES],
     /// Motor torque, theta and inputs as last admitted.
     pub(crate) torque: N,
+    /// A motor torque that jumped and waits for the next row to confirm it.
+    pub(crate) torque_waiting: N,
     pub(crate) gyro: N,
     pub(crate) inputs: [N; health::INPUTS],
     /// Uncertainty from what the filter has not followed yet.
     pub(crate) transient: N,
+    /// d without its noise, for the balance on a stop.
+    pub(crate) level: N,
     /// What phi has moved unseen by the gyro, and its uncertainty.
     pub(crate) offset: N::Wide,
     pub(crate) offset_bound: N,
@@ -28,8 +32,8 @@ pub struct State<N: Number> {
     pub(crate) health: health::State,
     /// Rows until the filter's steady gains hold.
     pub(crate) settling: u32,
-    /// How much farther out than theta the filter has been lately, near a stop.
-    pub(crate) outward: N,
+    /// Whether the last correction was left out because a stop may have held theta back.
+    pub(crate) postponed: bool,
     pub(crate) held: held::State<N>,
     /// The servo as it follows theta, where the motor torque is not measured.
     pub(crate) servo: [N::Wide; 6],
@@ -51,9 +55,11 @@ impl<N: Number> State<N> {
         Self {
             filter: [N::Wide::default(); STATES],
             torque: N::ZERO,
+            torque_waiting: N::ZERO,
             gyro: N::ZERO,
             inputs: [N::ZERO; health::INPUTS],
             transient: N::ZERO,
+            level: N::ZERO,
             offset: N::Wide::default(),
             offset_bound: N::ZERO,
             ins: ins::State::default(),
@@ -61,7 +67,7 @@ impl<N: Number> State<N> {
             watched: true,
             health: health::State::default(),
             settling: 0,
-            outward: N::ZERO,
+            postponed: false,
             held: held::State::default(),
             servo: [N::Wide::default(); 6],
             lasting: Flags::NONE,
