@@ -97,11 +97,12 @@ impl<N: Number> Law<N> {
         let (gimbal_angle, _) = output(&|s| plant.gimbal_angle_of(s), units.gimbal_angle);
         let (motor_torque, _) = output(&|s| plant.motor_torque_of(s), units.motor_torque);
         let last = ORDER - 1;
+        let between = |factor: f64, from: usize, to: usize| N::coef(N::rescaled(factor, scales[from] - scales[to]));
         let blocks = core::array::from_fn(|block| {
             let [a, b, c, d] = transitions[block];
             let [i, j] = [2 * block, 2 * block + 1];
             Block {
-                transition: [N::decay_coef(a), N::coef(b), N::coef(c), N::decay_coef(d)],
+                transition: [N::decay_coef(a), between(b, j, i), between(c, i, j), N::decay_coef(d)],
                 drive: [drive_coef(i), drive_coef(j)],
                 gimbal_angle: [gimbal_angle.coefs[i], gimbal_angle.coefs[j]],
                 motor_torque: [motor_torque.coefs[i], motor_torque.coefs[j]],

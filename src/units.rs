@@ -44,8 +44,13 @@ impl Units {
         // A coefficient is a fraction: a mode's full scale also holds what the torque's full scale drives.
         let drive = modes.drive(config.period_s).map(|factor| N::exponent(N::rescaled(factor.abs(), torque)));
         let mut mode_scales: [i32; ORDER] = core::array::from_fn(|i| N::exponent(bounds[i]).max(drive[i]));
-        for pair in mode_scales.chunks_exact_mut(2) {
-            pair.fill(pair[0].max(pair[1]));
+        let (transitions, _) = modes.transition(config.period_s);
+        for (pair, [_, to_first, to_second, _]) in mode_scales.chunks_exact_mut(2).zip(transitions) {
+            // What one coordinate gives to the other is a fraction, too. The factors' product is below 1, so that the
+            // second does not undo the first.
+            let excess = |factor: f64, from: i32, to: i32| N::exponent(N::rescaled(factor.abs(), from - to)).max(0);
+            pair[0] += excess(to_first, pair[1], pair[0]);
+            pair[1] += excess(to_second, pair[0], pair[1]);
         }
         // Each mode's part of an output is a fraction of the output's full scale.
         let output =

@@ -3,7 +3,7 @@
 //! A step of `T_d` by 1 makes theta the sum of `zeta(l) e^(l t)` over the poles l, `zeta = H A(l) / (l P'(l))`:
 //! theta has no constant part, because F has an integrator. Driven by the *change* of `T_d`, every mode therefore
 //! decays to zero, and no large numbers cancel at rest. Two modes, a complex pair or two real ones, make a block of two
-//! coordinates, chosen so that all nine coordinates add up to theta and every block's matrix has entries of at most 1.
+//! coordinates, chosen so that all nine coordinates add up to theta, without large parts that cancel.
 
 use crate::BuildError;
 use crate::build::complex::Complex;
@@ -42,6 +42,9 @@ pub(crate) struct Modes {
     pairs: [Pair; BLOCKS],
     single: f64,
 }
+
+/// Scale of a complex mode's imaginary part, which is no part of theta: too small to be seen in the sum.
+const ASIDE: f64 = 1.0 / 65_536.0;
 
 /// A 2 by 2 matrix, row by row.
 type Square = [f64; 4];
@@ -195,15 +198,14 @@ impl Modes {
 
 impl Pair {
     /// Coordinates of a block from the amplitudes of its two modes: the real and imaginary part of a complex one, whose
-    /// real part is its theta; the two thetas of real ones.
+    /// real part is its theta, and the imaginary part made small; the two thetas of real ones.
     fn coordinates(self) -> Square {
         match self {
-            // Nearly real: a sine of large amplitude and slow phase, scaled to what it becomes before it decays.
-            Self::Complex(pole) if pole.im < 0.5 * pole.re.abs() => {
-                let slowness = pole.im / pole.abs();
-                [1.0, -slowness, 0.0, slowness]
+            Self::Complex(pole) => {
+                // Nearly real: a sine of large amplitude and slow phase, scaled to what it becomes before it decays.
+                let slowness = if pole.im < 0.5 * pole.re.abs() { pole.im / pole.abs() } else { 1.0 };
+                [1.0, -ASIDE * slowness, 0.0, ASIDE * slowness]
             }
-            Self::Complex(_) => [0.5, 0.5, 0.5, -0.5],
             // Nearly equal poles: their sum and their divided difference, which stay finite as the poles meet.
             Self::Real(first, second) if nearly_equal(first, second) => {
                 let difference = (second - first) / first;
