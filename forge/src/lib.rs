@@ -8,13 +8,17 @@ pub mod detect;
 mod draw;
 pub mod effects;
 pub mod excitation;
+pub mod folder;
 mod machine;
 mod memory;
 mod palmgren;
 pub mod scene;
+pub mod score;
+pub mod seal;
 pub mod sensors;
 mod track;
 pub mod truth;
+pub mod write;
 
 pub use draw::{Draw, Seed};
 pub use machine::{Machine, Sample};

@@ -1,0 +1,12 @@
+//! The score of a blind diagnosis: rates with Wilson intervals, probabilities against outcomes, tables and pictures.
+
+pub mod calibration;
+pub mod judge;
+pub mod page;
+mod picture;
+pub mod rate;
+pub mod report;
+pub mod tally;
+
+pub use judge::Judged;
+pub use tally::Score;
