@@ -5,6 +5,7 @@
 
 #![forbid(unsafe_code)]
 
+mod blind;
 mod convert;
 mod exit;
 mod interrupt;
@@ -29,6 +30,8 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Blind cases for the diagnosis: makes them sealed, diagnoses, scores.
+    Blind(blind::Args),
     /// Turns a foreign CSV file into a log: names, units, axes, one constant rate.
     Convert(convert::Args),
     /// Runs a log through the model; without one, the paper's two 20 g cases.
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
     };
     interrupt::watch();
     let result = match &cli.command {
+        Some(Command::Blind(args)) => blind::blind(args),
         Some(Command::Convert(args)) => convert::convert(args),
         Some(Command::Run(args)) => run::run(args),
         None => run::run_default(&cli.run),

@@ -285,3 +285,26 @@ fn check_reports(published: &Published, manifest: &Manifest, reports: &Path) -> 
     }
     Ok(newest)
 }
+
+/// The answers of an opened corpus with the reports that the manifest holds.
+///
+/// A report that does not have its form counts as a failed diagnosis.
+///
+/// # Errors
+/// A report cannot be read.
+pub fn judged(answers: Answers, manifest: &Manifest, reports: &Path) -> Result<Vec<crate::score::Judged>, Refusal> {
+    let mut all = Vec::with_capacity(answers.answers.len());
+    for answer in answers.answers {
+        let entry = manifest
+            .reports
+            .iter()
+            .find(|entry| entry.log == answer.log)
+            .ok_or_else(|| Refusal::ReportCount(answer.log.clone()))?;
+        let report = match entry.sha256 {
+            None => None,
+            Some(_) => crate::score::report::Report::parse(&read(&reports.join(&entry.log).join("gap.json"))?).ok(),
+        };
+        all.push(crate::score::judge::judge(answer, report, entry.seconds));
+    }
+    Ok(all)
+}

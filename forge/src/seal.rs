@@ -81,3 +81,9 @@ pub fn hexadecimal(bytes: &[u8]) -> String {
         text
     })
 }
+
+/// A seed that nobody knows beforehand.
+#[must_use]
+pub fn fresh_seed() -> crate::draw::Seed {
+    Sha256::digest(fresh_key().0.as_bytes()).into()
+}
