@@ -41,6 +41,7 @@ pub mod gyro;
 mod identity;
 mod ins;
 mod law;
+pub mod monitor;
 mod number;
 pub mod paper;
 mod row;

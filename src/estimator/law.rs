@@ -244,6 +244,12 @@ impl<N: Number> Law<N> {
         State::new()
     }
 
+    /// Exponent of the full scale of theta as measured.
+    #[must_use]
+    pub fn gyro_exponent(&self) -> i32 {
+        self.gyro
+    }
+
     /// Readings in SI as the law takes them; `None` or not finite: no reading.
     #[must_use]
     pub fn measured(&self, gyro_angle_rad: Option<f64>, motor_torque_nm: Option<f64>) -> Measured<N> {
