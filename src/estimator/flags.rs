@@ -38,11 +38,16 @@ impl Flags {
     pub const INPUT_SPIKE: Self = Self(1 << 12);
     /// An acceleration or the rate has not changed for too many rows.
     pub const INPUT_STUCK: Self = Self(1 << 13);
+    /// A sensor was not well while phi was carried through a saturation: the offset kept since may be wrong by more than
+    /// its bound. Stays set.
+    pub const OFFSET_DOUBTFUL: Self = Self(1 << 14);
+    /// The faults of theta and of the motor torque.
+    pub const GYRO_OR_TORQUE: Self = Self(0x07E0);
     /// The sensors' faults.
     pub const SENSORS: Self = Self(0x3FE0);
 
     /// Every flag with its name in results and reports.
-    pub const NAMES: [(Self, &'static str); 14] = [
+    pub const NAMES: [(Self, &'static str); 15] = [
         (Self::SATURATED, "saturated"),
         (Self::OFFSET_HELD, "offset_held"),
         (Self::BOUND_TOO_WIDE, "bound_too_wide"),
@@ -57,6 +62,7 @@ impl Flags {
         (Self::INPUT_WRONG, "input_wrong"),
         (Self::INPUT_SPIKE, "input_spike"),
         (Self::INPUT_STUCK, "input_stuck"),
+        (Self::OFFSET_DOUBTFUL, "offset_doubtful"),
     ];
 
     /// The bits.

@@ -43,6 +43,13 @@ pub(crate) struct State {
     inputs_held: [bool; INPUTS],
 }
 
+impl State {
+    /// Whether a motor torque that jumped waits for the next row.
+    pub(crate) fn torque_waits(&self) -> bool {
+        self.torque_held
+    }
+}
+
 /// Readings that may be used.
 pub(crate) struct Admitted<N> {
     pub(crate) gyro: Option<N>,

@@ -101,9 +101,16 @@ impl<N: Number> Law<N> {
     }
 
     /// One period under the mean motor torque `torque`.
-    pub(crate) fn advance(&self, state: &mut State<N>, axis: &crate::Law<N>, model: &ModelState<N>, torque: N) {
+    pub(crate) fn advance(
+        &self,
+        state: &mut State<N>,
+        axis: &crate::Law<N>,
+        model: &ModelState<N>,
+        torque: N,
+        inputs_well: bool,
+    ) {
         let rate = N::narrow(state.rate);
-        let modelled = self.modelled(axis, model, rate);
+        let modelled = if inputs_well { self.modelled(axis, model, rate) } else { state.modelled };
         let mean = (state.modelled.half() + modelled.half()).shift_down(self.torque_shift);
         state.modelled = modelled;
         let net = state.surplus + mean - torque;

@@ -23,6 +23,11 @@ use crate::state::State as ModelState;
 use crate::stop::Side;
 use crate::units::Units;
 
+/// Sensor faults that leave the filter's disturbance torque in doubt.
+const TROUBLE: Flags = Flags::GYRO_OR_TORQUE;
+/// For so many rows.
+const TROUBLED_ROWS: u32 = 100;
+
 /// What the sensors of the axis read at this row; `None` where there is no reading.
 ///
 /// In the full scales that [`Law::measured`] gives. A reading that is not finite counts as none.
@@ -195,7 +200,7 @@ impl<N: Number> Law<N> {
         let seen_noise = filter.deviation(&[now[0], now[1], now[2], now[3]]);
         let rate_noise = filter.ratio / period * filter.deviation(&[0.0, 0.0, 1.0, 0.0]);
         // phi from a rate that is uncertain, and from a torque that may have come.
-        let outage = rate_noise * period + 0.5 * period * period * 0.1 * axis.range.torque_nm / jg;
+        let outage = rate_noise * period + 0.75 * period * period * 0.1 * axis.range.torque_nm / jg;
         Self {
             health: health::Law::build(config, axis, units, gyro),
             change: core::array::from_fn(|i| {
@@ -417,6 +422,8 @@ impl<N: Number> Law<N> {
             mean = previous.half() + torque.half() + admitted.catch_up;
             state.torque = torque;
         }
+        let troubled = admitted.flags.bits() & TROUBLE.bits() != 0 && !state.health.torque_waits();
+        state.trouble = if troubled { TROUBLED_ROWS } else { state.trouble.saturating_sub(1) };
         let last_gyro = state.gyro;
         if let Some(gyro) = measured.gyro_angle_rad.filter(|gyro| gyro.is_number()) {
             state.gyro = gyro;
@@ -426,7 +433,10 @@ impl<N: Number> Law<N> {
             Regime::Free => self.step_free(state, &admitted, mean, last_gyro, axis, model),
             Regime::Held(side) => self.step_on_stop(state, &admitted, mean, side, axis, model),
         };
-        state.watched = state.regime != Regime::Free || state.settling > 0 || self.health.watches(&state.health);
+        state.watched = state.regime != Regime::Free
+            || state.settling > 0
+            || state.trouble > 0
+            || self.health.watches(&state.health);
         estimate
     }
 
@@ -472,6 +482,7 @@ impl<N: Number> Law<N> {
             let predicted = N::head(state.filter[0]).shift_up(self.shift);
             return match side_beyond(predicted, self.zone) {
                 Some(side) if rows > 1 && !predicted.within(self.rest) => {
+                    state.lasting |= Flags::OFFSET_DOUBTFUL;
                     self.meet_stop(state, side, side.mirror(self.rest), axis, model, flags)
                 }
                 _ => self.finish(state, N::ZERO, flags),
@@ -496,10 +507,13 @@ impl<N: Number> Law<N> {
         }
         if admitted.gyro_back {
             // Where theta is and how fast it moves is all that is known after an outage.
-            self.place_anew(state, gyro, last_gyro, admitted);
+            let beyond = !innovation.half().half().within(self.gate);
+            state.lasting |= Flags::OFFSET_DOUBTFUL.when(beyond);
+            self.place_anew(state, gyro);
             return self.finish(state, innovation, flags | Flags::SETTLING);
         }
-        if !settling && !innovation.within(self.gate) {
+        let gate = if settling { self.gate + self.gate + self.gate + self.gate } else { self.gate };
+        if !innovation.within(gate) {
             health::Law::<N>::miss_gyro(&mut state.health);
             state.transient = state.transient.most(self.outage);
             return self.finish(state, innovation, flags | Flags::GYRO_MISSING);
@@ -510,7 +524,7 @@ impl<N: Number> Law<N> {
     }
 
     /// The filter begins anew at theta; p and d go on as predicted.
-    fn place_anew(&self, state: &mut State<N>, gyro: N, _last: N, _admitted: &Admitted<N>) {
+    fn place_anew(&self, state: &mut State<N>, gyro: N) {
         state.filter[0] = gyro.shift_down(self.shift).widen();
         state.settling = self.settling_rows;
         state.transient = state.transient.least(self.outage);
@@ -558,6 +572,8 @@ impl<N: Number> Law<N> {
             ..held::State::default()
         };
         state.regime = Regime::Held(side);
+        state.lasting |= Flags::OFFSET_DOUBTFUL.when(state.trouble > 0);
+        state.postponed = false;
         state.watched = true;
         self.finish_held(state, flags)
     }
@@ -571,13 +587,26 @@ impl<N: Number> Law<N> {
         axis: &crate::Law<N>,
         model: &ModelState<N>,
     ) -> Estimate<N> {
-        self.held.advance(&mut state.held, axis, model, mean);
+        // A servo whose torque jumps on the stop is no fault: what was held back has been made up for.
+        let jump = Flags::TORQUE_MISSING.when(state.health.torque_waits());
+        let faults = admitted.flags.bits() & Flags::SENSORS.bits() & !jump.bits();
+        let inputs = Flags::INPUT_WRONG | Flags::INPUT_SPIKE;
+        state.lasting |= Flags::OFFSET_DOUBTFUL.when(faults & !Flags::INPUT_SPIKE.bits() != 0);
+        self.held.advance(&mut state.held, axis, model, mean, !admitted.flags.intersects(inputs));
         if let Some(gyro) = admitted.gyro {
             let fallen = side.mirror(state.held.stop - gyro);
-            if fallen > self.fallen && !(admitted.gyro_back && !gyro.within(self.zone)) {
+            let back_on_stop = admitted.gyro_back && !gyro.within(self.zone);
+            let moved = !fallen.within(self.fallen) && !back_on_stop;
+            // A spike looks like a release: it takes a second row.
+            let confirmed = moved && state.postponed;
+            state.postponed = moved && !confirmed;
+            if state.postponed {
+                return self.finish_held(state, admitted.flags);
+            }
+            if confirmed && fallen > N::ZERO {
                 return self.leave_stop(state, side, gyro, fallen, admitted.flags);
             }
-            let outward = fallen < -self.fallen || admitted.gyro_back;
+            let outward = confirmed || admitted.gyro_back;
             // theta that still moves takes H theta' from the balance.
             let follow = if outward { fallen } else { fallen.half().half().half() };
             let follow = side.mirror(follow);
@@ -600,6 +629,7 @@ impl<N: Number> Law<N> {
         let fall = self.release.fall(fallen.shift_down(self.shift), &held.rates.map(|rate| side.mirror(rate)));
         let excess = self.held.spanned(&held, side.mirror(fall.excess));
         let reading = self.held.spanned(&held, fall.excess_bound);
+        state.postponed = false;
         let Correction { angle, bound } = release::Law::correction(&self.held, &held, &self.root_sum, excess, reading);
         let p = self.release.rate.at(&[N::narrow(held.rate) - side.mirror(fall.excess)]);
         self.place(state, gyro, side.mirror(fall.slope), p);

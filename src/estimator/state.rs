@@ -32,6 +32,8 @@ pub struct State<N: Number> {
     pub(crate) health: health::State,
     /// Rows until the filter's steady gains hold.
     pub(crate) settling: u32,
+    /// Rows until a fault of theta or of the motor torque is forgotten.
+    pub(crate) trouble: u32,
     /// Whether the last correction was left out because a stop may have held theta back.
     pub(crate) postponed: bool,
     pub(crate) held: held::State<N>,
@@ -67,6 +69,7 @@ impl<N: Number> State<N> {
             watched: true,
             health: health::State::default(),
             settling: 0,
+            trouble: 0,
             postponed: false,
             held: held::State::default(),
             servo: [N::Wide::default(); 6],
