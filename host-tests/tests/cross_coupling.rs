@@ -59,7 +59,8 @@ fn closed_form_without_the_option_nothing_couples() {
 
 /// The law multiplies each row's spin rate by theta of the row before: a drift that swings f times a second comes out
 /// `2 pi f T` too late, 3e-3 of it at 0.5 Hz and 2e-2 at 3 Hz. The drift of a transient is off by a period times its
-/// bandwidth, 4e-3 here, and by what the stop adds while theta falls from it.
+/// bandwidth, 4e-3 here, and by what the stop adds while theta falls from it. A run through a saturation has an offset
+/// met to 2e-4, with the coupling and without: a difference of the two is off by as much of phi's peak.
 #[test]
 fn cross_drift_agrees_with_the_plant() {
     type Inputs = fn(f64) -> Row;
@@ -109,7 +110,8 @@ fn cross_drift_agrees_with_the_plant() {
                 run_on.faults,
             );
             println!("{text}");
-            assert!(phi <= bound && worst <= bound * size, "{text}");
+            let offset = if run_on.events.is_empty() { 0.0 } else { 2e-4 * plant_on.peak_phi_rad() };
+            assert!(phi <= bound && worst <= bound * size + offset, "{text}");
         }
     }
 }

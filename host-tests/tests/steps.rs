@@ -1,8 +1,9 @@
 //! Torque steps, friction and unbalance off: peaks, contacts, releases and lasting offsets.
 
 use gimbal_servo::paper::{DEGREE_RAD, DYNE_CM_NM};
-use gimbal_servo::{Config, Faults};
-use host_tests::axis::{Run, System, run, run_plant};
+use gimbal_servo::{Config, Faults, Fixed, Number};
+use host_tests::Row;
+use host_tests::axis::{Run, System, run, run_plant, si};
 use host_tests::compare::relative;
 use host_tests::inputs::{at_period, bare, held, torque_pulse, torque_step};
 
@@ -165,4 +166,26 @@ fn closed_form_the_motor_carries_a_steady_torque() {
         let run = step(system, &consistent(), 1e5, 10.0);
         assert!(relative(run.last().motor_torque_nm, 1e5 * DYNE_CM_NM) < 1e-5);
     }
+}
+
+/// A settled state is one that its row leaves alone: phi, theta and phi' stay zero and the motor carries the torque,
+/// friction and unbalance included.
+#[test]
+fn closed_form_a_settled_state_stays_as_it_is() {
+    fn stays<N: Number>() {
+        let config = Config::consistent();
+        let law = config.build::<N>().unwrap();
+        let row = Row { accel_y_mps2: 30.0, vehicle_rate_radps: 0.1, torque_nm: 3e-3, ..Row::default() };
+        let input = law.units().input(&si(&row));
+        let mut state = law.settled(input);
+        for _ in 0..2000 {
+            let output = law.units().output(&law.step(&mut state, input));
+            assert!(output.gimbal_angle_rad.abs() < 1e-8 && output.gyro_angle_rad.abs() < 1e-8, "{output:?}");
+            let carried = output.friction_torque_nm + output.unbalance_torque_nm + row.torque_nm;
+            assert!(relative(output.motor_torque_nm, carried) < 1e-6, "{output:?}");
+            assert!(output.faults.is_empty(), "{output:?}");
+        }
+    }
+    stays::<f32>();
+    stays::<Fixed>();
 }
