@@ -41,8 +41,8 @@ impl Flags {
     /// A sensor was not well while phi was carried through a saturation: the offset kept since may be wrong by more than
     /// its bound. Stays set.
     pub const OFFSET_DOUBTFUL: Self = Self(1 << 14);
-    /// The faults of theta and of the motor torque.
-    pub const GYRO_OR_TORQUE: Self = Self(0x07E0);
+    /// The faults of theta and of the motor torque, and inputs that are no numbers or out of range.
+    pub const GYRO_TORQUE_OR_WRONG: Self = Self(0x0FE0);
     /// The sensors' faults.
     pub const SENSORS: Self = Self(0x3FE0);
 

@@ -35,6 +35,7 @@ pub(crate) struct Law<N: Number> {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct State {
     gyro_missing: u32,
+    gyro_rejected: u32,
     gyro_equal: u32,
     torque_missing: u32,
     torque_equal: u32,
@@ -138,7 +139,10 @@ impl<N: Number> Law<N> {
             torque = measured.motor_torque_nm.filter(|torque| torque.within(self.torque_range));
             let equal = torque.is_some_and(|torque| torque == memory.torque);
             health.torque_equal = if equal { health.torque_equal.saturating_add(1) } else { 0 };
-            let stuck = self.stuck_rows > 0 && health.torque_equal >= self.stuck_rows;
+            // On a stop the torque runs off: there a few equal readings are a fault.
+            let on_stop = matches!(memory.regime, super::state::Regime::Held(_));
+            let rows = if on_stop { self.stuck_rows.min(4) } else { self.stuck_rows };
+            let stuck = self.stuck_rows > 0 && health.torque_equal >= rows;
             let jumped =
                 torque.is_some_and(|torque| !(torque - memory.torque).abs().within(N::from_bits(self.torque_jump)));
             // The first row has nothing to jump from.
@@ -163,7 +167,7 @@ impl<N: Number> Law<N> {
             torque,
             catch_up,
             gyro_missing: health.gyro_missing,
-            gyro_back: fresh.is_some() && before >= OUTAGE,
+            gyro_back: fresh.is_some() && (before >= OUTAGE || health.gyro_rejected >= OUTAGE),
             torque_lost: self.torque_measured && torque.is_none(),
             flags,
         }
@@ -190,6 +194,12 @@ impl<N: Number> Law<N> {
     /// A reading of theta was held back.
     pub(crate) fn miss_gyro(state: &mut State) {
         state.gyro_missing = state.gyro_missing.saturating_add(1);
+        state.gyro_rejected = state.gyro_rejected.saturating_add(1);
+    }
+
+    /// A reading of theta was used.
+    pub(crate) fn take_gyro(state: &mut State) {
+        state.gyro_rejected = 0;
     }
 
     /// Whether the next row needs a closer look.

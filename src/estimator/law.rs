@@ -24,7 +24,7 @@ use crate::stop::Side;
 use crate::units::Units;
 
 /// Sensor faults that leave the filter's disturbance torque in doubt.
-const TROUBLE: Flags = Flags::GYRO_OR_TORQUE;
+const TROUBLE: Flags = Flags::GYRO_TORQUE_OR_WRONG;
 /// For so many rows.
 const TROUBLED_ROWS: u32 = 100;
 
@@ -196,7 +196,7 @@ impl<N: Number> Law<N> {
         let seen_gain: f64 = now.iter().zip(&filter.gain).map(|(row, gain)| row * gain).sum();
         let read = libm::hypot(config.sensors.gyro_noise_rad, config.sensors.gyro_step_rad / libm::sqrt(12.0));
         let angle = |value: f64| N::quantise(value, gyro);
-        let zone = stop * (1.0 - 5.0 * tolerance.stop_angle) - 6.0 * filter.innovation_rad;
+        let zone = stop * (1.0 - 4.0 * tolerance.stop_angle) - 6.0 * filter.innovation_rad;
         let seen_noise = filter.deviation(&[now[0], now[1], now[2], now[3]]);
         let rate_noise = filter.ratio / period * filter.deviation(&[0.0, 0.0, 1.0, 0.0]);
         // phi from a rate that is uncertain, and from a torque that may have come.
@@ -494,21 +494,28 @@ impl<N: Number> Law<N> {
             let least = if settling { self.usual + self.usual } else { self.usual };
             let [_, w, ..] = state.filter.map(N::head);
             let moved = side.mirror(gyro - last_gyro).shift_down(self.shift);
-            let stopped = moved < side.mirror(w).half();
-            if deficit > least && (stopped || state.postponed) {
+            let speed = side.mirror(w);
+            let usual = self.usual.shift_down(self.shift);
+            let still = moved < usual;
+            // Near a turning point theta stands still by itself: it must have been moving.
+            if deficit > least && still && speed > usual && moved < speed.half() {
                 state.postponed = false;
                 return self.meet_stop(state, side, gyro, axis, model, flags);
             }
             // A stop may hold theta back: the filter must not learn from it before that is decided.
-            state.postponed = deficit + deficit > self.usual && !settling && !state.postponed;
+            let slowed = moved < speed.half() || still;
+            let some = deficit + deficit + deficit > self.usual && slowed && state.waits == 0;
+            state.postponed = !settling && (some || (deficit > least && state.waits < 3));
+            state.waits = if state.postponed { state.waits + 1 } else { 0 };
             if state.postponed {
                 return self.finish(state, innovation, flags);
             }
         }
         if admitted.gyro_back {
             // Where theta is and how fast it moves is all that is known after an outage.
-            let beyond = !innovation.half().half().within(self.gate);
+            let beyond = !innovation.within(self.gate);
             state.lasting |= Flags::OFFSET_DOUBTFUL.when(beyond);
+            health::Law::<N>::take_gyro(&mut state.health);
             self.place_anew(state, gyro);
             return self.finish(state, innovation, flags | Flags::SETTLING);
         }
@@ -518,6 +525,7 @@ impl<N: Number> Law<N> {
             state.transient = state.transient.most(self.outage);
             return self.finish(state, innovation, flags | Flags::GYRO_MISSING);
         }
+        health::Law::<N>::take_gyro(&mut state.health);
         let gain = if settling || admitted.torque_lost { &self.quick_gain } else { &self.gain };
         self.correct(state, gain, innovation);
         self.finish(state, innovation, flags)

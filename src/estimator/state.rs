@@ -36,6 +36,8 @@ pub struct State<N: Number> {
     pub(crate) trouble: u32,
     /// Whether the last correction was left out because a stop may have held theta back.
     pub(crate) postponed: bool,
+    /// Corrections left out in a row.
+    pub(crate) waits: u32,
     pub(crate) held: held::State<N>,
     /// The servo as it follows theta, where the motor torque is not measured.
     pub(crate) servo: [N::Wide; 6],
@@ -71,6 +73,7 @@ impl<N: Number> State<N> {
             settling: 0,
             trouble: 0,
             postponed: false,
+            waits: 0,
             held: held::State::default(),
             servo: [N::Wide::default(); 6],
             lasting: Flags::NONE,
