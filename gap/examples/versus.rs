@@ -34,7 +34,8 @@ fn main() {
             let run = predict(&physics, &inputs, &begin, c[0].len());
             let ms = start.elapsed().as_secs_f64() * 1e3;
             let rms = |a: &[f64], b: &[f64]| {
-                (a.iter().zip(b).skip(8000).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / (a.len() - 8000) as f64).sqrt()
+                (a.iter().zip(b).skip(8000).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / (a.len() - 8000) as f64)
+                    .sqrt()
             };
             let zero = vec![0.0; c[0].len()];
             worst.push(format!(

@@ -1,6 +1,18 @@
 //! The gap between a model and a log: where it lies, which effect causes it, how far it shrinks.
+//!
+//! A log is compared with predictions of the whole platform; every nominal parameter and every effect of the library
+//! is a direction in which the prediction may move. What moves it onto the log, at the least cost, is the diagnosis.
+//! The method, its limits and measured tables: `docs/gap.md`.
 
 #![forbid(unsafe_code)]
 
+pub mod diagnose;
+pub mod fit;
+pub mod judge;
 pub mod library;
+pub mod place;
+pub mod record;
+pub mod report;
 pub mod simulate;
+
+pub use diagnose::{Diagnosis, diagnose};

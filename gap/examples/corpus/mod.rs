@@ -100,8 +100,11 @@ pub fn rows(excitation: Excitation, seconds: f64, seed: u64) -> Vec<Row> {
                 .collect()
         }
         Excitation::Flight => {
-            let (vx, vy, vz) =
-                (wander(rng, 20, 15.0, 120.0, 4.0), wander(rng, 20, 15.0, 120.0, 4.0), wander(rng, 20, 15.0, 120.0, 4.0));
+            let (vx, vy, vz) = (
+                wander(rng, 20, 15.0, 120.0, 4.0),
+                wander(rng, 20, 15.0, 120.0, 4.0),
+                wander(rng, 20, 15.0, 120.0, 4.0),
+            );
             let (slow_x, slow_y) = (wander(rng, 8, 0.05, 2.0, 4.0), wander(rng, 8, 0.05, 2.0, 4.0));
             let roll = wander(rng, 8, 0.1, 1.5, 0.8);
             let shake = wander(rng, 20, 5.0, 80.0, 0.02);
@@ -109,7 +112,11 @@ pub fn rows(excitation: Excitation, seconds: f64, seed: u64) -> Vec<Row> {
             let boost_s = 0.25 * seconds;
             times
                 .map(|t| {
-                    let thrust = if t < boost_s { 12.0 * g * (1.0 - (-t / 0.3).exp()) } else { 12.0 * g * (-(t - boost_s) / 0.2).exp() };
+                    let thrust = if t < boost_s {
+                        12.0 * g * (1.0 - (-t / 0.3).exp())
+                    } else {
+                        12.0 * g * (-(t - boost_s) / 0.2).exp()
+                    };
                     let level = if t < boost_s { 1.0 } else { 0.3 };
                     Row {
                         accel_x_mps2: level * (vx(t) + slow_x(t)) + thrust * 0.8,
@@ -128,7 +135,8 @@ pub fn rows(excitation: Excitation, seconds: f64, seed: u64) -> Vec<Row> {
 /// The platform with its nominal parameters off by up to `share` of the tolerance.
 pub fn drifted(config: &Config, share: f64, seed: u64) -> Config {
     let rng = &mut rng(seed, 2);
-    let mut off = |value: &mut f64, tolerance: f64| *value *= 1.0 + share * tolerance * (2.0 * rng.random::<f64>() - 1.0);
+    let mut off =
+        |value: &mut f64, tolerance: f64| *value *= 1.0 + share * tolerance * (2.0 * rng.random::<f64>() - 1.0);
     let mut drifted = *config;
     off(&mut drifted.servo.gimbal_inertia_kg_m2, 0.03);
     off(&mut drifted.servo.gain_nm_per_rad_s, 0.03);
@@ -179,4 +187,25 @@ pub fn simulate(case: &Case) -> Simulated {
         }
     }
     Simulated { columns }
+}
+
+/// The same as a log.
+pub fn as_log(simulated: &Simulated) -> gimbal_log::Log {
+    use gimbal_log::Column;
+    let columns = [
+        Column::Time,
+        Column::AccelX,
+        Column::AccelY,
+        Column::AccelZ,
+        Column::VehicleRate,
+        Column::CrossRate,
+        Column::GyroAngle,
+        Column::MotorTorque,
+    ];
+    let mut log = gimbal_log::Log::default();
+    log.time.period_s = 1e-3;
+    for (column, values) in columns.into_iter().zip(&simulated.columns) {
+        log.set(column, values.clone());
+    }
+    log
 }

@@ -1,5 +1,9 @@
 //! Every effect: how it enters the physics, and how its signature is looked for.
 
 mod apply;
+mod candidates;
+mod nuisance;
 
 pub use apply::apply;
+pub use candidates::{Candidate, Offer, candidates};
+pub use nuisance::{Nuisance, nuisances};

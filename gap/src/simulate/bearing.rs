@@ -43,11 +43,7 @@ impl Viscous {
         };
         let size = f64::from(bearing.count) * bearing.lubrication_factor * bearing.pitch_diameter_m.powi(3);
         let speed = bearing.viscosity_m2ps * 1e6 * RADPS_RPM;
-        Self {
-            slow_nm: slow * size,
-            fast_nm: fast * size * speed.powf(2.0 / 3.0),
-            break_radps: BREAK_CST_RPM / speed,
-        }
+        Self { slow_nm: slow * size, fast_nm: fast * size * speed.powf(2.0 / 3.0), break_radps: BREAK_CST_RPM / speed }
     }
 
     pub(crate) fn torque_nm(&self, speed_radps: f64) -> f64 {

@@ -227,8 +227,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     fn turns(&self, state: &Running<N>, to: &Now) -> bool {
         let near = 3.0 * self.physics.config.bearing.slip_rate_radps;
         let ahead = to.rate - state.x[PHI_RATE];
-        let builds_up =
-            self.physics.friction.presliding_rad > 0.0 && (state.zeta - state.w.signum()).abs() > 1e-3;
+        let builds_up = self.physics.friction.presliding_rad > 0.0 && (state.zeta - state.w.signum()).abs() > 1e-3;
         state.w.abs() < near
             || ahead.abs() < near
             || ahead * state.w < 0.0

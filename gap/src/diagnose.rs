@@ -1,0 +1,155 @@
+//! The whole way from a log to a diagnosis.
+
+use gimbal_log::Log;
+use gimbal_model_file::ModelFile;
+
+use crate::fit::{Fit, Problem, search, without};
+use crate::judge::{Decision, Detectable, Shrink, Verdict, decide, detectable, shrink};
+use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
+use crate::record::{Record, faults};
+
+/// A fit may leave this much of the noise that was expected, and no less.
+const TOO_QUIET: f64 = 0.9;
+
+/// Everything that a report says about one log.
+#[derive(Debug)]
+pub struct Diagnosis {
+    /// Log as read.
+    pub record: Record,
+    /// Verdict; none when the data do not serve.
+    pub decision: Option<Decision>,
+    /// Shares of the blocks.
+    pub blocks: Vec<(String, f64)>,
+    /// Shares of the bands.
+    pub bands: Vec<Band>,
+    /// Shares of the regimes.
+    pub regimes: Vec<Regime>,
+    /// When.
+    pub spans: Vec<Span>,
+    /// What each effect takes away.
+    pub removes: Vec<f64>,
+    /// Before and after.
+    pub shrink: Option<Shrink>,
+    /// Smallest sizes.
+    pub detectable: Vec<Detectable>,
+    /// Spectra of the residual: nominal and fitted, channel by channel.
+    pub spectra: [Vec<Spectrum>; 2],
+    /// The fit that was chosen, or that of the nominal parameters.
+    pub fit: Option<Fit>,
+}
+
+impl Diagnosis {
+    /// The verdict.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.decision.as_ref().map_or(Verdict::CannotTell, |decision| decision.verdict)
+    }
+}
+
+/// Diagnoses one log against a model.
+#[must_use]
+pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
+    let record = Record::new(log, &model.config);
+    if !record.faults.is_empty() {
+        return refused(record);
+    }
+    let faults = faults(&record, model);
+    if !faults.is_empty() {
+        let mut record = record;
+        record.faults = faults;
+        return refused(record);
+    }
+    let mut problem = Problem::new(&record, model);
+    let mut search = search(&problem);
+    // a fit below the noise says that the noise was taken too high: what the effect did was in it
+    if let Some(best) = search.fits.first()
+        && best.square < TOO_QUIET * problem.whitener.count() as f64
+    {
+        let rest = crate::fit::raw_residual(&record, &best.prediction);
+        problem = Problem::with_noise(&record, model, Some(&rest));
+        search = crate::fit::search(&problem);
+    }
+    let decision = decide(&problem, &search, &model.tolerance);
+    let channels = record.channels.len();
+    let fit = match decision.chosen {
+        Some(index) => search.fits.swap_remove(index),
+        None => search.null,
+    };
+    let shrink = shrink(&problem, &fit);
+    let period_s = record.inputs.period_s;
+    let spectra = [&shrink.nominal, &fit.prediction].map(|prediction| {
+        let residual = crate::fit::raw_residual(&record, prediction);
+        let of = |place: usize| {
+            Spectrum::new(&residual[place], &record.channels[place].valid, problem.noise[place], period_s)
+        };
+        (0..channels).map(of).collect::<Vec<_>>()
+    });
+    let contributions: Vec<Vec<f64>> = (0..fit.set.0.len()).map(|place| without(&problem, &fit, place)).collect();
+    let total: Vec<f64> = match contributions.split_first() {
+        Some((first, rest)) => {
+            let mut total = first.clone();
+            for contribution in rest {
+                total.iter_mut().zip(contribution).for_each(|(total, value)| *total += value);
+            }
+            total
+        }
+        None => fit.residual.clone(),
+    };
+    let power = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+    let all: f64 = contributions.iter().map(|contribution| power(contribution)).sum::<f64>().max(1e-30);
+    let gone = 1.0 - (decision.left_over[1] - 1.0).max(0.0) / (decision.left_over[0] - 1.0).max(1e-9);
+    let removes: Vec<f64> =
+        contributions.iter().map(|c| (power(c) / all * gone.clamp(0.0, 1.0)).clamp(0.0, 1.0)).collect();
+    let blocks = if fit.set.0.is_empty() {
+        if decision.verdict == Verdict::NoGap { Vec::new() } else { block_shares(&problem) }
+    } else {
+        let mut shares: Vec<(String, f64)> = Vec::new();
+        for (place, &index) in fit.set.0.iter().enumerate() {
+            let block =
+                gimbal_plant::Effect::from_name(problem.candidates[index].effect).map(|e| e.block().to_string());
+            let share = power(&contributions[place]) / all;
+            let block = block.unwrap_or_default();
+            match shares.iter_mut().find(|(name, _)| *name == block) {
+                Some((_, sum)) => *sum += share,
+                None => shares.push((block, share)),
+            }
+        }
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares
+    };
+    let gap = decision.verdict != Verdict::NoGap;
+    let detectable = detectable(&problem, &model.tolerance);
+    let found_regimes = if gap { regimes(&record, &fit.prediction, &total, channels) } else { Vec::new() };
+    let found_spans = if gap && !fit.set.0.is_empty() { spans(&total, channels, period_s) } else { Vec::new() };
+    let bands = if gap { Spectrum::bands(&spectra[0]) } else { Vec::new() };
+    drop(problem);
+    Diagnosis {
+        record,
+        decision: Some(decision),
+        blocks,
+        bands,
+        regimes: found_regimes,
+        spans: found_spans,
+        removes,
+        shrink: Some(shrink),
+        detectable,
+        spectra,
+        fit: Some(fit),
+    }
+}
+
+fn refused(record: Record) -> Diagnosis {
+    Diagnosis {
+        record,
+        decision: None,
+        blocks: Vec::new(),
+        bands: Vec::new(),
+        regimes: Vec::new(),
+        spans: Vec::new(),
+        removes: Vec::new(),
+        shrink: None,
+        detectable: Vec::new(),
+        spectra: [Vec::new(), Vec::new()],
+        fit: None,
+    }
+}

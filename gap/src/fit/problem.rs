@@ -1,0 +1,334 @@
+//! One log against one model: base prediction, sensitivities to everything, noise.
+
+use gimbal_model_file::ModelFile;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::{Normal, Whitener};
+use crate::library::{Candidate, Nuisance, Offer, apply, candidates, nuisances};
+use crate::record::{Record, Signal};
+use crate::simulate::{Begin, Physics, Prediction, predict};
+
+/// Time blocks.
+pub const BLOCKS: usize = 10;
+/// Places of the beginning that are unknown, and their standard deviations.
+const STATE_SIGMA: [f64; 10] = [0.02, 2e-4, 0.1, 0.3, 0.3, 0.3, 0.3, 1e-2, 1e-2, 1.0];
+
+/// Which column is what.
+#[derive(Debug, Clone)]
+pub struct Columns {
+    /// Number of columns of the beginning.
+    pub begin: usize,
+    /// Number of nominal parameters.
+    pub nuisances: usize,
+    /// First column of each candidate's probes.
+    pub first: Vec<usize>,
+}
+
+/// Everything that fits are made from.
+#[derive(Debug)]
+pub struct Problem<'a> {
+    /// The log.
+    pub record: &'a Record,
+    /// Nominal stop [rad].
+    pub stop_rad: f64,
+    /// Nominal physics.
+    pub base: Physics,
+    /// Where the nominal prediction begins.
+    pub begin: Begin,
+    /// Nominal parameters.
+    pub nuisances: Vec<Nuisance>,
+    /// Ways in which effects may show.
+    pub candidates: Vec<Candidate>,
+    /// Which column is what.
+    pub columns: Columns,
+    /// Whitened sensitivities.
+    pub whitened: Vec<Vec<f64>>,
+    /// Measured less nominal, whitened.
+    pub residual: Vec<f64>,
+    /// Their normal equations.
+    pub normal: Normal,
+    /// Noise.
+    pub whitener: Whitener,
+    /// Rms of the noise of each channel.
+    pub noise: Vec<f64>,
+    /// Prior standard deviations of the columns.
+    pub sigma: Vec<f64>,
+}
+
+impl<'a> Problem<'a> {
+    /// Predicts, differentiates, whitens.
+    #[must_use]
+    pub fn new(record: &'a Record, model: &ModelFile) -> Self {
+        Self::with_noise(record, model, None)
+    }
+
+    /// The same with the noise taken from a residual that is better known.
+    #[must_use]
+    pub(crate) fn with_noise(record: &'a Record, model: &ModelFile, rest_known: Option<&Signals>) -> Self {
+        let mut base = Physics::nominal(&model.config);
+        base.config.period_s = record.inputs.period_s;
+        // the float goes as far as the log shows that it goes
+        let reached = record.channel(Signal::GyroAngle).map_or(0.0, |channel| peak(&channel.values));
+        base.config.gyro.stop_angle_rad =
+            record.plateau_rad.unwrap_or(base.config.gyro.stop_angle_rad.max(1.2 * reached));
+        let first = |signal| record.channel(signal).filter(|c| c.valid[0]).map(|c| c.values[0]);
+        let torque = first(Signal::MotorTorque);
+        let begin = Begin::at(&base, &record.inputs, first(Signal::GyroAngle).unwrap_or(0.0), torque);
+        let nominal = predict(&base, &record.inputs, &begin, record.rows());
+        let raw = residual(record, &nominal);
+        let noise: Vec<f64> =
+            raw.iter().zip(&record.channels).map(|(raw, channel)| rough(raw, &channel.valid)).collect();
+        let nuisances = nuisances(&model.tolerance, &base);
+        let sees = |signal| record.channel(signal).is_some();
+        let peak_torque_nm = record
+            .channel(Signal::MotorTorque)
+            .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| peak(&channel.values));
+        let offer = Offer {
+            peak_torque_nm,
+            cycles: &[],
+            sees_gimbal: sees(Signal::GimbalAngle),
+            sees_torque: sees(Signal::MotorTorque),
+            sees_cross: !record.inputs.cross_radps.is_empty(),
+        };
+        let mut candidates = candidates(&record.inputs, &offer);
+        let draft = Draft { record, base: &base, begin: &begin, nominal: &nominal };
+        let (columns, mut raw_columns, sigma) = draft.columns(&nuisances, &candidates);
+        let valid = valid(record);
+        let scaled: Vec<f64> = noise.iter().map(|noise| 1.0 / noise).collect();
+        scale(&mut raw_columns, &scaled);
+        let mut target = vec![raw];
+        scale(&mut target, &scaled);
+        let target = target.swap_remove(0);
+        // what everything together does not explain
+        let rest = match rest_known {
+            None => rest(&raw_columns, &target, &valid, &sigma),
+            Some(known) => {
+                let mut known = vec![known.clone()];
+                scale(&mut known, &scaled);
+                known.swap_remove(0)
+            }
+        };
+        // lines of ripple stand out of it
+        let lines = crate::fit::search::ripple_cycles(record, &nominal, &target, &noise, &valid);
+        let (mut columns, mut sigma) = (columns, sigma);
+        for candidate in library_ripple(&record.inputs, &offer, &lines) {
+            columns.first.push(raw_columns.len());
+            let mut probes = draft.probes(&candidate);
+            scale(&mut probes, &scaled);
+            raw_columns.extend(probes);
+            sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
+            candidates.push(candidate);
+        }
+        let whitener = Whitener::new(&rest, &valid);
+        let whitened: Vec<Vec<f64>> = raw_columns.into_par_iter().map(|column| whitener.apply(&column)).collect();
+        let residual = whitener.apply(&target);
+        let normal = Normal::new(&whitened, &residual, BLOCKS);
+        let stop_rad = model.config.gyro.stop_angle_rad;
+        Self {
+            record,
+            stop_rad,
+            base,
+            begin,
+            nuisances,
+            candidates,
+            columns,
+            whitened,
+            residual,
+            normal,
+            whitener,
+            noise,
+            sigma,
+        }
+    }
+
+    /// Whitened residual of a prediction.
+    #[must_use]
+    pub fn whiten(&self, signals: Vec<Vec<f64>>) -> Vec<f64> {
+        let mut signals = vec![signals];
+        let scaled: Vec<f64> = self.noise.iter().map(|noise| 1.0 / noise).collect();
+        scale(&mut signals, &scaled);
+        self.whitener.apply(&signals[0])
+    }
+
+    /// Columns and prior precisions of a set of candidates.
+    #[must_use]
+    pub fn chosen(&self, set: &[usize]) -> (Vec<usize>, Vec<f64>) {
+        let fixed = self.columns.begin + self.columns.nuisances;
+        let mut chosen: Vec<usize> = (0..fixed).collect();
+        let mut sigma = self.sigma[..fixed].to_vec();
+        for &index in set {
+            let candidate = &self.candidates[index];
+            for (release, prior) in candidate.releases.iter().zip(&candidate.prior) {
+                if let Some(place) = self.nuisances.iter().position(|nuisance| nuisance.name == *release) {
+                    let place = self.columns.begin + place;
+                    sigma[place] = sigma[place].max(prior.1);
+                }
+            }
+            for probe in 0..candidate.probes.len() {
+                chosen.push(self.columns.first[index] + probe);
+                sigma.push(candidate.prior[probe].1);
+            }
+        }
+        (chosen, sigma.iter().map(|sigma| 1.0 / (sigma * sigma)).collect())
+    }
+}
+
+fn library_ripple(inputs: &crate::simulate::Inputs, offer: &Offer, cycles: &[f64]) -> Vec<Candidate> {
+    let offer = Offer { cycles, ..*offer };
+    candidates(inputs, &offer).into_iter().filter(|candidate| candidate.effect == "torque_ripple").collect()
+}
+
+/// What sensitivities are made from.
+struct Draft<'a> {
+    record: &'a Record,
+    base: &'a Physics,
+    begin: &'a Begin,
+    nominal: &'a Prediction,
+}
+
+/// One series a channel.
+pub(crate) type Signals = Vec<Vec<f64>>;
+
+impl Draft<'_> {
+    fn columns(&self, nuisances: &[Nuisance], candidates: &[Candidate]) -> (Columns, Vec<Signals>, Vec<f64>) {
+        let mut columns = Columns { begin: 0, nuisances: nuisances.len(), first: Vec::new() };
+        let mut sigma = Vec::new();
+        let states: Vec<usize> =
+            (0..10).filter(|&state| state != 9 || self.record.channel(Signal::GimbalAngle).is_some()).collect();
+        columns.begin = states.len();
+        let mut all: Vec<Signals> = states.par_iter().map(|&state| self.begin_column(state)).collect();
+        sigma.extend(states.iter().map(|&state| STATE_SIGMA[state]));
+        all.par_extend(nuisances.par_iter().map(|nuisance| {
+            let mut physics = self.base.clone();
+            nuisance.shift(&mut physics, nuisance.step);
+            self.difference(&physics, nuisance.step)
+        }));
+        sigma.extend(nuisances.iter().map(|nuisance| nuisance.sigma));
+        let probes: Vec<Vec<Signals>> = candidates.par_iter().map(|candidate| self.probes(candidate)).collect();
+        for (candidate, probes) in candidates.iter().zip(probes) {
+            columns.first.push(all.len());
+            sigma.extend(candidate.prior.iter().take(probes.len()).map(|(_, sigma)| *sigma));
+            all.extend(probes);
+        }
+        (columns, all, sigma)
+    }
+
+    fn begin_column(&self, state: usize) -> Signals {
+        let step = 0.05 * STATE_SIGMA[state];
+        let mut begin = self.begin.clone();
+        begin.state[state] += step;
+        // it dies away
+        let rows = if state == 9 { usize::MAX } else { self.rows_of(25.0) };
+        let moved = predict(self.base, &self.record.inputs, &begin, rows);
+        difference(self.record, &moved, self.nominal, step)
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    fn rows_of(&self, seconds: f64) -> usize {
+        (seconds / self.record.inputs.period_s) as usize
+    }
+
+    fn difference(&self, physics: &Physics, step: f64) -> Signals {
+        let moved = predict(physics, &self.record.inputs, self.begin, usize::MAX);
+        difference(self.record, &moved, self.nominal, step)
+    }
+
+    fn probes(&self, candidate: &Candidate) -> Vec<Signals> {
+        candidate
+            .probes
+            .iter()
+            .map(|(values, divisor)| {
+                let mut physics = self.base.clone();
+                apply(candidate.effect, values, &mut physics);
+                self.difference(&physics, *divisor)
+            })
+            .collect()
+    }
+}
+
+/// The predicted samples of a channel.
+pub(crate) fn predicted(signal: Signal, prediction: &Prediction) -> &[f64] {
+    match signal {
+        Signal::GyroAngle => &prediction.gyro_angle_rad,
+        Signal::MotorTorque => &prediction.motor_torque_nm,
+        Signal::GimbalAngle => &prediction.gimbal_angle_rad,
+    }
+}
+
+/// Measured less predicted.
+pub(crate) fn residual(record: &Record, prediction: &Prediction) -> Signals {
+    let of = |channel: &crate::record::Channel| {
+        channel.values.iter().zip(predicted(channel.signal, prediction)).map(|(a, b)| a - b).collect()
+    };
+    record.channels.iter().map(of).collect()
+}
+
+/// One prediction less another, over a step.
+pub(crate) fn difference(record: &Record, moved: &Prediction, base: &Prediction, step: f64) -> Signals {
+    let of = |channel: &crate::record::Channel| {
+        let (moved, base) = (predicted(channel.signal, moved), predicted(channel.signal, base));
+        let mut column: Vec<f64> = moved.iter().zip(base).map(|(a, b)| (a - b) / step).collect();
+        column.resize(base.len(), 0.0);
+        column
+    };
+    record.channels.iter().map(of).collect()
+}
+
+fn scale(columns: &mut [Signals], by: &[f64]) {
+    columns.par_iter_mut().for_each(|signals| {
+        for (signal, by) in signals.iter_mut().zip(by) {
+            for value in signal {
+                *value *= by;
+            }
+        }
+    });
+}
+
+/// Rows at which every channel counts.
+fn valid(record: &Record) -> Vec<bool> {
+    (0..record.rows()).map(|k| record.channels.iter().all(|channel| channel.valid[k])).collect()
+}
+
+/// Rms of white noise from third differences, whatever else there is.
+fn rough(values: &[f64], valid: &[bool]) -> f64 {
+    let mut steps: Vec<f64> = (3..values.len())
+        .filter(|&k| valid[k - 3..=k].iter().all(|valid| *valid))
+        .map(|k| (values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]).abs())
+        .collect();
+    if steps.is_empty() {
+        return 1.0;
+    }
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    (*median / 0.6745 / 20.0_f64.sqrt()).max(1e-12)
+}
+
+/// The residual of a fit of all columns, on a part of the rows.
+fn rest(columns: &[Signals], target: &Signals, valid: &[bool], sigma: &[f64]) -> Signals {
+    let picks: Vec<usize> = (0..valid.len()).step_by(6).filter(|&k| valid[k]).collect();
+    let thin = |signals: &Signals| -> Vec<f64> {
+        signals.iter().flat_map(|signal| picks.iter().map(|&k| signal[k])).collect()
+    };
+    let thinned: Vec<Vec<f64>> = columns.par_iter().map(thin).collect();
+    let normal = Normal::new(&thinned, &thin(target), 4);
+    let chosen: Vec<usize> = (0..columns.len()).collect();
+    let precision: Vec<f64> = sigma.iter().map(|sigma| 1.0 / (sigma * sigma)).collect();
+    let coefficients = normal
+        .solve(&chosen, &precision)
+        .map_or_else(|| DVector::zeros(columns.len()), |solution| solution.coefficients);
+    let channel = |index: usize| -> Vec<f64> {
+        let mut rest = target[index].clone();
+        for (column, coefficient) in columns.iter().zip(&coefficients) {
+            for (rest, value) in rest.iter_mut().zip(&column[index]) {
+                *rest -= coefficient * value;
+            }
+        }
+        rest
+    };
+    (0..target.len()).into_par_iter().map(channel).collect()
+}
+
+fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |peak, value| peak.max(value.abs()))
+}

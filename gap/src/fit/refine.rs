@@ -1,0 +1,418 @@
+//! A set of effects fitted to the outputs themselves: Gauss-Newton on predictions, nominal parameters and beginning
+//! along with it.
+
+use gimbal_plant::{Bound, Effect};
+use nalgebra::{DMatrix, DVector};
+
+use super::normal::solve;
+use super::problem::{difference, residual};
+use super::{Problem, Set};
+use crate::library::apply;
+use crate::simulate::{Begin, Physics, Prediction, predict};
+
+/// Most iterations.
+const ITERATIONS: usize = 12;
+/// Share of the excess that is put down to the equations being linearised, as noise, while a fit is under way.
+const LINEARISED: f64 = 0.002;
+/// Standard deviation of the logarithm of a parameter that is not a size.
+const SHAPE_SIGMA: f64 = 1.2;
+
+/// A set of effects, fitted.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// Candidates, as the set had them.
+    pub set: Set,
+    /// Values of each effect.
+    pub values: Vec<Vec<f64>>,
+    /// Standard errors of the values.
+    pub errors: Vec<Vec<f64>>,
+    /// Shifts of the nominal parameters.
+    pub shifts: Vec<f64>,
+    /// Where the run begins.
+    pub begin: Begin,
+    /// The platform as fitted.
+    pub physics: Physics,
+    /// What it predicts.
+    pub prediction: Prediction,
+    /// Whitened residual.
+    pub residual: Vec<f64>,
+    /// Square of the whitened residual.
+    pub square: f64,
+    /// Square of the shifts over their priors.
+    pub prior: f64,
+    /// What the evidence has beside both: volume of the parameters, cost of the search [nats].
+    pub volume: f64,
+    /// Sensitivities to the values at the end, whitened, with the values' places.
+    pub sensitivities: Vec<Vec<f64>>,
+}
+
+/// One value that is fitted beside the nominal parameters.
+#[derive(Debug, Clone, Copy)]
+struct Free {
+    effect: usize,
+    value: usize,
+    /// Fitted in its logarithm.
+    log: bool,
+    sigma: f64,
+    center: f64,
+}
+
+/// Fits a set from the linear fit's values.
+#[must_use]
+pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Fit {
+    let mut values = start.to_vec();
+    let mut shifts = vec![0.0; problem.nuisances.len()];
+    let mut state = vec![0.0; problem.columns.begin];
+    let free = free(problem, set, &values);
+    let (fixed, precision) = fixed(problem, set);
+    let mut now = evaluate(problem, set, &values, &shifts, &state);
+    let priors = |values: &[Vec<f64>], shifts: &[f64], state: &[f64]| {
+        prior(shifts, state, &precision) + shape_prior(&free, values)
+    };
+    let mut power = square(&now.1);
+    let mut last = None;
+    let limits = limits(problem, &precision);
+    for _ in 0..ITERATIONS {
+        let excess = power - problem.whitener.count() as f64;
+        let temper = (LINEARISED * excess).max(1.0);
+        let cost = power / temper + priors(&values, &shifts, &state);
+        let columns: Vec<Vec<f64>> =
+            free.iter().map(|free| sensitivity(problem, set, &values, &shifts, &state, free, &now.0)).collect();
+        let (mut gram, mut drive, mut weights) = joined(problem, fixed, &columns, &now.1);
+        gram /= temper;
+        drive /= temper;
+        for (place, value) in state.iter().chain(&shifts).enumerate() {
+            drive[place] -= precision[place] * value;
+        }
+        for (index, free) in free.iter().enumerate() {
+            let weight = 1.0 / (free.sigma * free.sigma);
+            let off = value_of(free, &values) - free.center;
+            drive[fixed + index] -= weight * off;
+            weights.push(weight);
+        }
+        let weights: Vec<f64> = precision.iter().copied().chain(weights).collect();
+        let chosen: Vec<usize> = (0..weights.len()).collect();
+        let Some(solution) = solve(&gram, &drive, &chosen, &weights) else { break };
+        let mut share = 1.0;
+        let mut better = false;
+        for _ in 0..4 {
+            let step = &solution.coefficients * share;
+            let (next_values, next_shifts, next_state) = moved(&free, &values, &shifts, &state, &step, &limits);
+            let next = evaluate(problem, set, &next_values, &next_shifts, &next_state);
+            let next_power = square(&next.1);
+            let next_cost = next_power / temper + priors(&next_values, &next_shifts, &next_state);
+            if next_cost < cost {
+                better = cost - next_cost > 0.3 || (LINEARISED * excess) > 1.0 && next_power < 0.9 * power;
+                (values, shifts, state, now, power) = (next_values, next_shifts, next_state, next, next_power);
+                break;
+            }
+            share *= 0.3;
+        }
+        last = Some((solution, columns));
+        if !better {
+            break;
+        }
+    }
+    let prior = priors(&values, &shifts, &state);
+    finish(problem, set, &free, Parts { values, shifts, state, now, prior, last })
+}
+
+impl Fit {
+    /// Logarithm of the evidence when the residual counts `1 / temper`, up to what all fits of the log share.
+    #[must_use]
+    pub fn evidence(&self, temper: f64) -> f64 {
+        -0.5 * self.square / temper - 0.5 * self.prior + self.volume
+    }
+}
+
+/// The prediction of a fit whose parameters are corrected by leaving blocks out: one step of Gauss-Newton.
+#[must_use]
+pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
+    let (fixed, precision) = fixed(problem, &fit.set);
+    let rows = fit.residual.len();
+    // the beginning is the log's own and stays
+    let begin = problem.columns.begin;
+    let mut columns: Vec<&Vec<f64>> = problem.whitened[begin..fixed].iter().collect();
+    columns.extend(&fit.sensitivities);
+    let free = free(problem, &fit.set, &fit.values);
+    let mut weights = precision[begin..].to_vec();
+    weights.extend(free.iter().map(|free| 1.0 / (free.sigma * free.sigma)));
+    let n = columns.len();
+    let (mut gram, mut drive) = (DMatrix::zeros(n, n), DVector::zeros(n));
+    for block in (0..super::BLOCKS).filter(|block| !out.contains(block)) {
+        let range = block * rows / super::BLOCKS..(block + 1) * rows / super::BLOCKS;
+        for i in 0..n {
+            drive[i] += dot(&columns[i][range.clone()], &fit.residual[range.clone()]);
+            for j in 0..=i {
+                let product = dot(&columns[i][range.clone()], &columns[j][range.clone()]);
+                gram[(i, j)] += product;
+                if i != j {
+                    gram[(j, i)] += product;
+                }
+            }
+        }
+    }
+    let excess = fit.square - problem.whitener.count() as f64;
+    let temper = (LINEARISED * excess).max(1.0);
+    gram /= temper;
+    drive /= temper;
+    for (place, shift) in fit.shifts.iter().enumerate() {
+        drive[place] -= weights[place] * shift;
+    }
+    let chosen: Vec<usize> = (0..n).collect();
+    let Some(solution) = solve(&gram, &drive, &chosen, &weights) else { return fit.prediction.clone() };
+    let limits = vec![f64::MAX; fit.shifts.len()];
+    let mut step = DVector::zeros(begin + n);
+    step.rows_mut(begin, n).copy_from(&solution.coefficients);
+    let state: Vec<f64> = fit.begin.state.iter().zip(&problem.begin.state).take(begin).map(|(a, b)| a - b).collect();
+    let (values, shifts, state) = moved(&free, &fit.values, &fit.shifts, &state, &step, &limits);
+    evaluate(problem, &fit.set, &values, &shifts, &state).0
+}
+
+/// What one effect of a fit contributes, whitened.
+#[must_use]
+pub fn without(problem: &Problem, fit: &Fit, place: usize) -> Vec<f64> {
+    let mut set = fit.set.clone();
+    let mut values = fit.values.clone();
+    let index = set.0.remove(place);
+    values.remove(place);
+    let mut shifts = fit.shifts.clone();
+    for release in problem.candidates[index].releases {
+        if let Some(nuisance) = problem.nuisances.iter().position(|nuisance| nuisance.name == *release) {
+            shifts[nuisance] = 0.0;
+        }
+    }
+    let physics = physics(problem, &set, &values, &shifts);
+    let prediction = predict(&physics, &problem.record.inputs, &fit.begin, usize::MAX);
+    problem.whiten(difference(problem.record, &fit.prediction, &prediction, 1.0))
+}
+
+struct Parts {
+    values: Vec<Vec<f64>>,
+    shifts: Vec<f64>,
+    state: Vec<f64>,
+    now: (Prediction, Vec<f64>),
+    prior: f64,
+    last: Option<(super::Solution, Vec<Vec<f64>>)>,
+}
+
+fn finish(problem: &Problem, set: &Set, free: &[Free], parts: Parts) -> Fit {
+    let Parts { mut values, shifts, state, now, prior, last } = parts;
+    let mut errors: Vec<Vec<f64>> = values.iter().map(|values| vec![0.0; values.len()]).collect();
+    let mut volume = f64::NEG_INFINITY;
+    let mut sensitivities = Vec::new();
+    if let Some((solution, columns)) = last {
+        let fixed = problem.columns.begin + problem.columns.nuisances;
+        for (index, free) in free.iter().enumerate() {
+            let sigma = solution.covariance[(fixed + index, fixed + index)].max(0.0).sqrt();
+            errors[free.effect][free.value] =
+                if free.log { sigma * values[free.effect][free.value].abs() } else { sigma };
+        }
+        for (effect, &index) in set.0.iter().enumerate() {
+            for (place, release) in problem.candidates[index].releases.iter().enumerate() {
+                if let Some(nuisance) = problem.nuisances.iter().position(|nuisance| nuisance.name == *release) {
+                    let column = problem.columns.begin + nuisance;
+                    values[effect][place] = shifts[nuisance];
+                    errors[effect][place] = solution.covariance[(column, column)].max(0.0).sqrt();
+                }
+            }
+        }
+        volume = solution.evidence - 0.5 * solution.gain;
+        sensitivities = columns;
+    }
+    for &index in &set.0 {
+        volume -= (problem.candidates[index].siblings as f64).ln();
+    }
+    let begin = begin(problem, &state);
+    let physics = physics(problem, set, &values, &shifts);
+    let square = square(&now.1);
+    Fit {
+        set: set.clone(),
+        values,
+        errors,
+        shifts,
+        begin,
+        physics,
+        prediction: now.0,
+        residual: now.1,
+        square,
+        prior,
+        volume,
+        sensitivities,
+    }
+}
+
+/// The platform with a set of effects and shifted parameters.
+fn physics(problem: &Problem, set: &Set, values: &[Vec<f64>], shifts: &[f64]) -> Physics {
+    let mut physics = problem.base.clone();
+    for (nuisance, shift) in problem.nuisances.iter().zip(shifts) {
+        nuisance.shift(&mut physics, *shift);
+    }
+    for (&index, values) in set.0.iter().zip(values) {
+        let candidate = &problem.candidates[index];
+        if candidate.releases.is_empty() {
+            apply(candidate.effect, values, &mut physics);
+        }
+    }
+    physics
+}
+
+fn begin(problem: &Problem, state: &[f64]) -> Begin {
+    let mut begin = problem.begin.clone();
+    for (place, shift) in begin.state.iter_mut().zip(state) {
+        *place += shift;
+    }
+    begin
+}
+
+fn evaluate(
+    problem: &Problem,
+    set: &Set,
+    values: &[Vec<f64>],
+    shifts: &[f64],
+    state: &[f64],
+) -> (Prediction, Vec<f64>) {
+    let physics = physics(problem, set, values, shifts);
+    let prediction = predict(&physics, &problem.record.inputs, &begin(problem, state), usize::MAX);
+    let whitened = problem.whiten(residual(problem.record, &prediction));
+    (prediction, whitened)
+}
+
+fn sensitivity(
+    problem: &Problem,
+    set: &Set,
+    values: &[Vec<f64>],
+    shifts: &[f64],
+    state: &[f64],
+    free: &Free,
+    now: &Prediction,
+) -> Vec<f64> {
+    let mut moved = values.to_vec();
+    let value = &mut moved[free.effect][free.value];
+    let step = if free.log {
+        *value *= 0.03_f64.exp();
+        0.03
+    } else {
+        let step = (0.02 * value.abs()).max(0.02 * free.sigma);
+        *value += step;
+        step
+    };
+    let physics = physics(problem, set, &moved, shifts);
+    let prediction = predict(&physics, &problem.record.inputs, &begin(problem, state), usize::MAX);
+    problem.whiten(difference(problem.record, &prediction, now, step))
+}
+
+/// The values that are fitted on their own.
+fn free(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Vec<Free> {
+    let mut all = Vec::new();
+    for (effect, &index) in set.0.iter().enumerate() {
+        let candidate = &problem.candidates[index];
+        let Some(entry) = Effect::from_name(candidate.effect).filter(|_| candidate.releases.is_empty()) else {
+            continue;
+        };
+        for (value, parameter) in entry.parameters().iter().enumerate() {
+            let log = parameter.bound != Bound::Any && start[effect][value] > 0.0;
+            let size = value < entry.sizes();
+            let own = start[effect][value];
+            let spread = 0.5 * parameter.low.abs().max(parameter.high.abs());
+            let free = if log {
+                Free { effect, value, log, sigma: SHAPE_SIGMA, center: own.ln() }
+            } else if size {
+                Free { effect, value, log, sigma: spread.max(own.abs()), center: 0.0 }
+            } else {
+                // cycles and phases move little from where they were found
+                let sigma = if parameter.unit == "rad" { 1.0 } else { 0.02 * own.abs().max(1.0) };
+                Free { effect, value, log, sigma, center: own }
+            };
+            all.push(free);
+        }
+    }
+    all
+}
+
+fn value_of(free: &Free, values: &[Vec<f64>]) -> f64 {
+    let value = values[free.effect][free.value];
+    if free.log { value.ln() } else { value }
+}
+
+fn shape_prior(free: &[Free], values: &[Vec<f64>]) -> f64 {
+    free.iter().map(|free| ((value_of(free, values) - free.center) / free.sigma).powi(2)).sum()
+}
+
+/// Number of columns of beginning and nominal parameters, and their precisions under the set.
+fn fixed(problem: &Problem, set: &Set) -> (usize, Vec<f64>) {
+    let fixed = problem.columns.begin + problem.columns.nuisances;
+    let (_, precision) = problem.chosen(&set.0);
+    (fixed, precision[..fixed].to_vec())
+}
+
+/// How far nominal parameters may go: little beyond their tolerance, or as far as a release lets them.
+fn limits(problem: &Problem, precision: &[f64]) -> Vec<f64> {
+    let released = |place: usize| 1.0 / precision[problem.columns.begin + place].sqrt();
+    let of = |(place, nuisance): (usize, &crate::library::Nuisance)| {
+        if released(place) > 1.01 * nuisance.sigma { (6.0 * released(place)).min(0.8) } else { 4.0 * nuisance.sigma }
+    };
+    problem.nuisances.iter().enumerate().map(of).collect()
+}
+
+fn prior(shifts: &[f64], state: &[f64], precision: &[f64]) -> f64 {
+    state.iter().chain(shifts).zip(precision).map(|(value, precision)| value * value * precision).sum()
+}
+
+fn square(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Normal equations of the fixed columns and the new ones.
+fn joined(
+    problem: &Problem,
+    fixed: usize,
+    columns: &[Vec<f64>],
+    residual: &[f64],
+) -> (DMatrix<f64>, DVector<f64>, Vec<f64>) {
+    let n = fixed + columns.len();
+    let mut gram = DMatrix::zeros(n, n);
+    gram.view_mut((0, 0), (fixed, fixed)).copy_from(&problem.normal.gram.view((0, 0), (fixed, fixed)));
+    let column = |index: usize| if index < fixed { &problem.whitened[index] } else { &columns[index - fixed] };
+    let drive = DVector::from_fn(n, |index, _| dot(column(index), residual));
+    for own in fixed..n {
+        for other in 0..=own {
+            let product = dot(column(own), column(other));
+            gram[(own, other)] = product;
+            gram[(other, own)] = product;
+        }
+    }
+    (gram, drive, Vec::new())
+}
+
+fn moved(
+    free: &[Free],
+    values: &[Vec<f64>],
+    shifts: &[f64],
+    state: &[f64],
+    step: &DVector<f64>,
+    limits: &[f64],
+) -> (Vec<Vec<f64>>, Vec<f64>, Vec<f64>) {
+    let mut next = values.to_vec();
+    let fixed = state.len() + shifts.len();
+    for (index, free) in free.iter().enumerate() {
+        let step = step[fixed + index];
+        let value = &mut next[free.effect][free.value];
+        if free.log {
+            *value *= step.clamp(-1.0, 1.0).exp();
+        } else {
+            *value += step;
+        }
+    }
+    let state_next = state.iter().enumerate().map(|(index, value)| value + step[index]).collect();
+    let shifts_next = shifts
+        .iter()
+        .enumerate()
+        .map(|(index, value)| (value + step[state.len() + index]).clamp(-limits[index], limits[index]))
+        .collect();
+    (next, shifts_next, state_next)
+}

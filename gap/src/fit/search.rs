@@ -1,0 +1,225 @@
+//! Which effects: single ones, then pairs and triples from the best, each refined before it is judged.
+
+use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use super::normal::solve;
+use super::{Fit, Problem, refine};
+use crate::record::{Record, Signal};
+use crate::simulate::Prediction;
+
+/// A set of candidates, by index.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Set(pub Vec<usize>);
+
+/// All hypotheses that were refined, the null first.
+#[derive(Debug)]
+pub struct Search {
+    /// Nominal parameters alone.
+    pub null: Fit,
+    /// Sets, the most probable first.
+    pub fits: Vec<Fit>,
+    /// Linear evidence of each candidate over the null.
+    pub singles: Vec<f64>,
+}
+
+/// Refined singles, and refined extensions of each of the best.
+const SINGLES: usize = 6;
+const EXTENSIONS: usize = 4;
+/// Evidence that an extension must promise to be looked at [nats].
+const PROMISE: f64 = 8.0;
+/// The same for a nominal parameter beyond its tolerance.
+const PROMISE_OF_SHIFT: f64 = 3.0;
+
+/// Looks through the library.
+#[must_use]
+pub fn search(problem: &Problem) -> Search {
+    let null = refine(problem, &Set::default(), &[]);
+    let ranked = extensions(problem, &null);
+    let singles = ranked.iter().map(|entry| entry.1).collect();
+    let mut fits = Vec::new();
+    let first = best_by_effect(problem, &ranked, &[], SINGLES);
+    fits.par_extend(
+        first
+            .par_iter()
+            .filter(|(index, gain)| promising(problem, *index, *gain))
+            .map(|(index, _)| extend(problem, &null, *index)),
+    );
+    sort(problem, &mut fits);
+    for size in 1..3 {
+        let seeds: Vec<&Fit> =
+            fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
+        let wider: Vec<Fit> = seeds
+            .par_iter()
+            .flat_map(|seed| {
+                let ranked = extensions(problem, seed);
+                let next = best_by_effect(problem, &ranked, &seed.set.0, EXTENSIONS);
+                next.into_par_iter()
+                    .filter(|(index, gain)| promising(problem, *index, *gain))
+                    .map(|(index, _)| extend(problem, seed, index))
+            })
+            .collect();
+        for fit in wider {
+            if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
+                fits.push(fit);
+            }
+        }
+        sort(problem, &mut fits);
+    }
+    Search { null, fits, singles }
+}
+
+fn promising(problem: &Problem, index: usize, gain: f64) -> bool {
+    gain > if problem.candidates[index].releases.is_empty() { PROMISE } else { PROMISE_OF_SHIFT }
+}
+
+/// How much of the best fit's excess is put down to the formulation of its effects.
+const FORMULATION: f64 = 0.01;
+
+/// By evidence under the noise that the best of them leaves.
+fn sort(problem: &Problem, fits: &mut [Fit]) {
+    let best = fits.iter().map(|fit| fit.square).fold(f64::MAX, f64::min);
+    let temper = (FORMULATION * (best - problem.whitener.count() as f64)).max(1.0);
+    fits.sort_by(|a, b| b.evidence(temper).total_cmp(&a.evidence(temper)));
+}
+
+/// Whether two sets name the same effects.
+pub(crate) fn same(problem: &Problem, a: &Set, b: &Set) -> bool {
+    let names = |set: &Set| {
+        let mut names: Vec<&str> = set.0.iter().map(|&index| problem.candidates[index].effect).collect();
+        names.sort_unstable();
+        names
+    };
+    names(a) == names(b)
+}
+
+/// Linear evidence of one candidate more, at a fit; and its amplitudes.
+fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
+    let all = problem.whitened.len();
+    let drive: Vec<f64> =
+        problem.whitened.par_iter().map(|column| column.iter().zip(&fit.residual).map(|(a, b)| a * b).sum()).collect();
+    let mut drive = nalgebra::DVector::from_vec(drive);
+    // priors pull the shifts that the fit has already
+    let (chosen, precision) = problem.chosen(&fit.set.0);
+    for (place, shift) in fit.shifts.iter().enumerate() {
+        let column = problem.columns.begin + place;
+        drive[column] -= precision[column] * shift;
+    }
+    debug_assert_eq!(drive.len(), all);
+    let base = solve(&problem.normal.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.evidence);
+    (0..problem.candidates.len())
+        .map(|index| {
+            if fit.set.0.iter().any(|&has| problem.candidates[has].effect == problem.candidates[index].effect) {
+                return (index, f64::NEG_INFINITY, Vec::new());
+            }
+            let mut set = fit.set.0.clone();
+            set.push(index);
+            let (wide, wide_precision) = problem.chosen(&set);
+            let mut drive = drive.clone();
+            // a released parameter is no longer pulled back
+            for (place, shift) in fit.shifts.iter().enumerate() {
+                let column = problem.columns.begin + place;
+                drive[column] += (precision[column] - wide_precision[column]) * shift;
+            }
+            let candidate = &problem.candidates[index];
+            let Some(solution) = solve(&problem.normal.gram, &drive, &wide, &wide_precision) else {
+                return (index, f64::NEG_INFINITY, Vec::new());
+            };
+            let amplitudes = if candidate.releases.is_empty() {
+                let from = wide.len() - candidate.probes.len();
+                (from..wide.len()).map(|place| solution.coefficients[place]).collect()
+            } else {
+                vec![0.0; candidate.releases.len()]
+            };
+            let sane = candidate.effect != "loop_delay"
+                && candidate.effect != "presliding"
+                && candidate.effect != "dead_zone"
+                && candidate.effect != "torque_saturation"
+                || amplitudes.first().is_some_and(|amplitude| *amplitude > 0.1 && *amplitude < 8.0);
+            let gain =
+                if sane { solution.evidence - base - (candidate.siblings as f64).ln() } else { f64::NEG_INFINITY };
+            (index, gain, amplitudes)
+        })
+        .collect()
+}
+
+/// The best candidate of each effect, the best effects first.
+fn best_by_effect(
+    problem: &Problem,
+    ranked: &[(usize, f64, Vec<f64>)],
+    taken: &[usize],
+    count: usize,
+) -> Vec<(usize, f64)> {
+    let mut order: Vec<(usize, f64)> =
+        ranked.iter().map(|(index, gain, _)| (*index, *gain)).filter(|(index, _)| !taken.contains(index)).collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut seen: Vec<&str> = Vec::new();
+    order.retain(|(index, gain)| {
+        let name = problem.candidates[*index].effect;
+        let new = !seen.contains(&name) && gain.is_finite();
+        seen.push(name);
+        new
+    });
+    order.truncate(count);
+    order
+}
+
+fn extend(problem: &Problem, from: &Fit, index: usize) -> Fit {
+    let amplitudes = extensions(problem, from).swap_remove(index).2;
+    let mut set = from.set.clone();
+    set.0.push(index);
+    let mut values = from.values.clone();
+    values.push(problem.candidates[index].values(&amplitudes));
+    refine(problem, &set, &values)
+}
+
+/// Cycles a revolution at which the torque residual has lines: a matched filter in rel.
+pub(crate) fn ripple_cycles(
+    record: &Record,
+    nominal: &Prediction,
+    target: &[Vec<f64>],
+    noise: &[f64],
+    valid: &[bool],
+) -> Vec<f64> {
+    let place = record.channels.iter().position(|channel| channel.signal == Signal::MotorTorque);
+    let Some(place) = place else { return Vec::new() };
+    let stride = 4;
+    let rel: Vec<f64> = record.inputs.turned_rad.iter().zip(&nominal.gimbal_angle_rad).map(|(a, b)| a - b).collect();
+    let (low, high) = rel.iter().fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
+    let span = high - low;
+    if !span.is_finite() || span < 0.05 {
+        return Vec::new();
+    }
+    // the torque residual without its slow part, where theta follows
+    let torque: Vec<f64> = target[place].iter().map(|value| value * noise[place]).collect();
+    let picks: Vec<usize> = (0..rel.len()).step_by(stride).filter(|&k| valid[k]).collect();
+    let finest = TAU / span;
+    let step = 0.25 * finest;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+    let count = ((150.0 / step) as usize).min(1500);
+    let mut lines: Vec<(f64, f64)> = (1..count)
+        .into_par_iter()
+        .map(|line| {
+            let cycles = finest.max(0.8) + line as f64 * step.max(150.0 / 1500.0 * 0.5);
+            let (mut sine, mut cosine) = (0.0, 0.0);
+            for &k in &picks {
+                let (s, c) = (cycles * rel[k]).sin_cos();
+                sine += s * torque[k];
+                cosine += c * torque[k];
+            }
+            (cycles, sine.hypot(cosine))
+        })
+        .collect();
+    lines.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut found: Vec<f64> = Vec::new();
+    for (cycles, _) in lines {
+        if found.iter().all(|other| (other - cycles).abs() > 2.0 * finest) {
+            found.push(cycles);
+        }
+        if found.len() == 2 {
+            break;
+        }
+    }
+    found
+}

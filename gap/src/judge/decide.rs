@@ -1,0 +1,294 @@
+//! The verdict and its probabilities.
+
+use gimbal_model_file::Tolerance;
+use gimbal_plant::Effect;
+
+use super::comb;
+use crate::fit::{Fit, Problem, Search};
+use crate::place::Spectrum;
+use crate::record::Signal;
+
+/// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
+const COST: f64 = 14.0;
+const COST_OF_SHIFT: f64 = 3.0;
+/// A nominal parameter is an effect from this many tolerances on.
+const BEYOND: f64 = 1.15;
+/// Share of the best fit's excess put down to the formulation.
+const FORMULATION: f64 = 0.01;
+/// Nats that count as one in probabilities: a constant, and a share of what the best set gains.
+const SCALE: f64 = 2.0;
+const SCALE_SHARE: f64 = 1e-5;
+/// Power of the residual over white noise, 0.3 to 20 Hz, up to which nothing is left over.
+const LEFT_OVER: f64 = 35.0;
+/// Least share of the gap that an effect takes away.
+const LEAST_SHARE: f64 = 0.003;
+
+/// What it comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing beyond noise and tolerance.
+    NoGap,
+    /// One set, and nothing left over.
+    Explained,
+    /// Effects, and something left over.
+    PartlyExplained,
+    /// A gap without an effect.
+    Unexplained,
+    /// Several sets that this log cannot tell apart, or data that do not serve.
+    CannotTell,
+}
+
+impl Verdict {
+    /// Name in the report.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NoGap => "no_gap",
+            Self::Explained => "explained",
+            Self::PartlyExplained => "partly_explained",
+            Self::Unexplained => "unexplained",
+            Self::CannotTell => "cannot_tell",
+        }
+    }
+}
+
+/// An effect that is named.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// Its name.
+    pub effect: &'static str,
+    /// Marginal probability.
+    pub probability: f64,
+    /// Values in the order of the effect's parameters.
+    pub values: Vec<f64>,
+    /// Standard errors.
+    pub errors: Vec<f64>,
+}
+
+/// A set of effects and its probability.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetProbability {
+    /// Names, in alphabetical order.
+    pub effects: Vec<&'static str>,
+    /// Of the set.
+    pub probability: f64,
+}
+
+/// The verdict.
+#[derive(Debug, Clone)]
+pub struct Decision {
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Effects named.
+    pub found: Vec<Found>,
+    /// Every set looked at, the most probable first; the empty set is the nominal model.
+    pub ranking: Vec<SetProbability>,
+    /// Other members of the class.
+    pub alternatives: Vec<SetProbability>,
+    /// That none of the library's effects is it.
+    pub unknown_probability: f64,
+    /// Index of the fit chosen in the search; none is the nominal model.
+    pub chosen: Option<usize>,
+    /// Power left over before and after, over white noise.
+    pub left_over: [f64; 2],
+    /// Remarks.
+    pub notes: Vec<String>,
+}
+
+/// Judges what the search found.
+#[must_use]
+pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Decision {
+    let count = problem.whitener.count() as f64;
+    let best_square = search.fits.iter().map(|fit| fit.square).fold(search.null.square, f64::min);
+    let temper = (FORMULATION * (best_square - count)).max(1.0);
+    let null_excess = (search.null.square - best_square).max(1.0);
+    let score = |fit: &Fit| -> f64 {
+        let mut score = fit.evidence(temper) - search.null.evidence(temper);
+        for (place, &index) in fit.set.0.iter().enumerate() {
+            let candidate = &problem.candidates[index];
+            if candidate.releases.is_empty() {
+                score -= COST;
+            } else {
+                score -= COST_OF_SHIFT;
+                if !beyond(problem, tolerance, candidate.effect, &fit.values[place], &fit.errors[place]) {
+                    score -= 1e3;
+                }
+            }
+        }
+        score
+    };
+    let mut scores: Vec<f64> = search.fits.iter().map(&score).collect();
+    // what a set has more than a smaller one must be worth it
+    for (index, fit) in search.fits.iter().enumerate() {
+        for (other, smaller) in search.fits.iter().enumerate() {
+            let nested = smaller.set.0.len() < fit.set.0.len()
+                && names(problem, smaller).iter().all(|name| names(problem, fit).contains(name));
+            if nested && smaller.square - fit.square < LEAST_SHARE * null_excess && scores[index] > scores[other] {
+                scores[index] = scores[other] - 1.0;
+            }
+        }
+    }
+    let top = scores.iter().copied().fold(0.0, f64::max);
+    let scale = SCALE + SCALE_SHARE * top;
+    let mut weights: Vec<f64> = scores.iter().map(|score| ((score - top) / scale).exp()).collect();
+    let null_weight = (-top / scale).exp();
+    let sum = null_weight + weights.iter().sum::<f64>();
+    for weight in &mut weights {
+        *weight /= sum;
+    }
+    let mut order: Vec<usize> = (0..weights.len()).collect();
+    order.sort_by(|a, b| weights[*b].total_cmp(&weights[*a]));
+    let chosen = order.first().copied().filter(|&index| weights[index] > null_weight / sum);
+    let before = left_over(problem, &search.null);
+    let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index]));
+    let unknown = unknown(before, after, chosen.is_some());
+    let share = 1.0 - unknown;
+    let set_of = |index: usize| SetProbability {
+        effects: names(problem, &search.fits[index]),
+        probability: share * weights[index],
+    };
+    let mut ranking: Vec<SetProbability> = order.iter().map(|&index| set_of(index)).collect();
+    ranking.push(SetProbability { effects: Vec::new(), probability: share * null_weight / sum });
+    ranking.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let mut decision = Decision {
+        verdict: Verdict::NoGap,
+        found: Vec::new(),
+        ranking,
+        alternatives: Vec::new(),
+        unknown_probability: unknown,
+        chosen,
+        left_over: [before, after],
+        notes: Vec::new(),
+    };
+    if let Some(index) = chosen {
+        let best = &search.fits[index];
+        let own = names(problem, best);
+        let marginal = |effect: &str| -> f64 {
+            decision.ranking.iter().filter(|set| set.effects.contains(&effect)).map(|set| set.probability).sum()
+        };
+        decision.found = best
+            .set
+            .0
+            .iter()
+            .enumerate()
+            .map(|(place, &candidate)| {
+                let effect = problem.candidates[candidate].effect;
+                let (values, errors) = (best.values[place].clone(), best.errors[place].clone());
+                Found { effect, probability: marginal(effect), values, errors }
+            })
+            .collect();
+        decision.alternatives = order
+            .iter()
+            .filter(|&&other| {
+                other != index
+                    && weights[other] > 0.1 * weights[index]
+                    && !contains(&names(problem, &search.fits[other]), &own)
+            })
+            .map(|&other| set_of(other))
+            .collect();
+        decision.verdict = if unknown > 0.6 {
+            decision.found.clear();
+            decision.chosen = None;
+            Verdict::Unexplained
+        } else if after > LEFT_OVER {
+            Verdict::PartlyExplained
+        } else if decision.alternatives.is_empty() {
+            Verdict::Explained
+        } else {
+            Verdict::CannotTell
+        };
+        if decision.verdict != Verdict::CannotTell {
+            decision.alternatives.clear();
+        }
+    } else if before > LEFT_OVER {
+        decision.verdict = Verdict::Unexplained;
+    }
+    let fit = chosen.map_or(&search.null, |index| &search.fits[index]);
+    direct(problem, fit, tolerance, &mut decision);
+    decision
+}
+
+/// Names of a fit's effects, in order.
+pub(crate) fn names(problem: &Problem, fit: &Fit) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = fit.set.0.iter().map(|&index| problem.candidates[index].effect).collect();
+    names.sort_unstable();
+    names
+}
+
+fn contains(larger: &[&str], smaller: &[&str]) -> bool {
+    smaller.iter().all(|name| larger.contains(name))
+}
+
+/// Whether a nominal parameter is beyond its tolerance by more than its own error.
+fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, values: &[f64], errors: &[f64]) -> bool {
+    let scale = if effect == "mass_unbalance" {
+        let unbalance = &problem.base.config.unbalance;
+        unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6)
+    } else {
+        1.0
+    };
+    values.iter().zip(errors).any(|(value, error)| value.abs() - error > BEYOND * tolerance.of(effect) * scale)
+}
+
+/// Power left over, 0.3 to 20 Hz, in the channel where most is left; 1 is white noise.
+fn left_over(problem: &Problem, fit: &Fit) -> f64 {
+    let record = problem.record;
+    let residual = crate::fit::raw_residual(record, &fit.prediction);
+    record
+        .channels
+        .iter()
+        .zip(&residual)
+        .zip(&problem.noise)
+        .filter(|((channel, _), _)| channel.signal != Signal::GimbalAngle)
+        .map(|((channel, residual), sigma)| {
+            Spectrum::new(residual, &channel.valid, *sigma, record.inputs.period_s).mean(0.3, 20.0)
+        })
+        .fold(0.0, f64::max)
+}
+
+/// How probable it is that no effect of the library is it.
+fn unknown(before: f64, after: f64, found: bool) -> f64 {
+    if after <= LEFT_OVER {
+        return 0.02 * (after / LEFT_OVER).clamp(0.1, 1.0);
+    }
+    if !found {
+        return (1.0 - 0.5 * LEFT_OVER / after).clamp(0.5, 0.98);
+    }
+    let share = after / before.max(after);
+    (share / (share + 0.12)).clamp(0.02, 0.98)
+}
+
+/// What the samples show by themselves: a stop elsewhere, a grid of angles.
+fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut Decision) {
+    let mut add = |effect: &'static str, value: f64, error: f64, probability: f64| {
+        if Effect::from_name(effect).is_none() {
+            return;
+        }
+        decision.found.push(Found { effect, probability, values: vec![value], errors: vec![error] });
+        for set in &mut decision.ranking {
+            set.effects.push(effect);
+            set.effects.sort_unstable();
+        }
+        for set in &mut decision.alternatives {
+            set.effects.push(effect);
+        }
+        if decision.verdict == Verdict::NoGap
+            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 3.0 * LEFT_OVER
+        {
+            decision.verdict = Verdict::Explained;
+            decision.unknown_probability = decision.unknown_probability.min(0.05);
+        }
+    };
+    if let Some(plateau) = problem.record.plateau_rad {
+        let change = plateau / problem.stop_rad - 1.0;
+        if change.abs() > BEYOND * tolerance.stop_angle {
+            add("stop_angle", change, problem.noise[0] / problem.stop_rad, 0.95);
+        }
+    }
+    if let Some(theta) = problem.record.channel(Signal::GyroAngle)
+        && let Some(step) =
+            comb::step_rad(&theta.values, &fit.prediction.gyro_angle_rad, &theta.valid, problem.noise[0])
+    {
+        add("pickoff_quantisation", step, 1e-3 * step, 0.97);
+    }
+}

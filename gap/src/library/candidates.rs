@@ -1,0 +1,179 @@
+//! How the signature of every effect is looked for: probes of the prediction, on a small grid of what is not linear.
+
+use gimbal_plant::{Bound, Effect};
+
+use crate::simulate::Inputs;
+
+/// One way in which an effect may show: its columns, and what their amplitudes mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// The effect.
+    pub effect: &'static str,
+    /// Values of the effect for each column, and what its difference to the base is divided by.
+    pub probes: Vec<(Vec<f64>, f64)>,
+    /// Prior of each amplitude: mean and standard deviation.
+    pub prior: Vec<(f64, f64)>,
+    /// Nominal parameters that are set free instead of new columns.
+    pub releases: &'static [&'static str],
+    /// Candidates of the same effect: what the search over them costs is its logarithm.
+    pub siblings: usize,
+}
+
+/// What the log offers to the effects.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Offer<'a> {
+    /// Largest motor torque that was predicted or measured [N m].
+    pub peak_torque_nm: f64,
+    /// Cycles a revolution at which the torque residual has lines.
+    pub cycles: &'a [f64],
+    /// Whether phi is measured.
+    pub sees_gimbal: bool,
+    /// Whether the motor torque is measured.
+    pub sees_torque: bool,
+    /// Whether the cross rate is.
+    pub sees_cross: bool,
+}
+
+/// Every candidate for a log.
+#[must_use]
+pub fn candidates(inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
+    let mut all = Vec::new();
+    for effect in Effect::all() {
+        all.extend(of(effect, inputs, offer));
+    }
+    all
+}
+
+fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
+    let name = effect.name();
+    let seconds = inputs.len() as f64 * inputs.period_s;
+    match name {
+        "friction_level" | "loop_gain" | "motor_lag" | "gyro_damping" | "angular_momentum" | "gimbal_inertia"
+        | "pickoff_scale" => {
+            vec![released(effect, release_of(name))]
+        }
+        "torque_scale" if offer.sees_torque => vec![released(effect, &["torque_scale"])],
+        "mass_unbalance" => vec![released(effect, &["unbalance x", "unbalance y"])],
+        // the pick-off shows the stop itself, and its steps
+        "stop_angle" | "pickoff_quantisation" | "torque_scale" => Vec::new(),
+        "float_torque" | "g_sensitive_float_torque" if !offer.sees_gimbal => Vec::new(),
+        "torque_bias" if !offer.sees_torque => Vec::new(),
+        "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
+        "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),
+        "friction_drift" => grid(effect, &[0.12, 0.4, 1.3].map(|share| vec![0.1, share * seconds])),
+        "cable_hysteresis" => grid(effect, &[0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])),
+        "flexible_mode" => grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, 0.03])),
+        "presliding" => secants(effect, &[3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along])),
+        "loop_delay" => secants(effect, &[vec![2.03e-4]]),
+        "dead_zone" => secants(effect, &[3e-5, 1.2e-4, 5e-4].map(|width| vec![width])),
+        "torque_saturation" => {
+            let peak = offer.peak_torque_nm;
+            secants(effect, &[0.97, 0.85, 0.7].map(|share| vec![share * peak]))
+        }
+        "torque_ripple" => {
+            let one = |cycles: f64| {
+                let quarter = std::f64::consts::FRAC_PI_2;
+                let probes = vec![(vec![1e-4, cycles, 0.0], 1e-4), (vec![1e-4, cycles, quarter], 1e-4)];
+                Candidate { effect: name, probes, prior: vec![(0.0, 5e-4); 2], releases: &[], siblings: 100 }
+            };
+            offer.cycles.iter().copied().map(one).collect()
+        }
+        _ => grid(effect, &[effect.typical()]),
+    }
+}
+
+fn release_of(name: &'static str) -> &'static [&'static str] {
+    match name {
+        "friction_level" => &["friction_level"],
+        "loop_gain" => &["loop_gain"],
+        "motor_lag" => &["motor_lag"],
+        "gyro_damping" => &["gyro_damping"],
+        "angular_momentum" => &["angular_momentum"],
+        "gimbal_inertia" => &["gimbal_inertia"],
+        _ => &["pickoff_scale"],
+    }
+}
+
+/// A standard deviation that spans the realistic range of a parameter.
+fn spread(effect: Effect, index: usize) -> f64 {
+    let parameter = effect.parameters()[index];
+    0.5 * parameter.low.abs().max(parameter.high.abs())
+}
+
+fn released(effect: Effect, releases: &'static [&'static str]) -> Candidate {
+    let prior = (0..releases.len()).map(|index| (0.0, spread(effect, index))).collect();
+    Candidate { effect: effect.name(), probes: Vec::new(), prior, releases, siblings: 1 }
+}
+
+/// Linear in the sizes; one candidate for each setting of the rest.
+fn grid(effect: Effect, settings: &[Vec<f64>]) -> Vec<Candidate> {
+    let one = |values: &Vec<f64>| {
+        let probes = (0..effect.sizes())
+            .map(|size| {
+                let mut probe = values.clone();
+                for other in 0..effect.sizes() {
+                    if other != size {
+                        probe[other] = 0.0;
+                    }
+                }
+                let divisor = probe[size];
+                (probe, divisor)
+            })
+            .collect();
+        let prior = (0..effect.sizes()).map(|size| (0.0, spread(effect, size))).collect();
+        Candidate { effect: effect.name(), probes, prior, releases: &[], siblings: settings.len() }
+    };
+    settings.iter().map(one).collect()
+}
+
+/// Not linear in the size: the difference at one size, in an amplitude near 1.
+fn secants(effect: Effect, settings: &[Vec<f64>]) -> Vec<Candidate> {
+    settings
+        .iter()
+        .map(|values| Candidate {
+            effect: effect.name(),
+            probes: vec![(values.clone(), 1.0)],
+            prior: vec![(0.0, 1.5)],
+            releases: &[],
+            siblings: settings.len(),
+        })
+        .collect()
+}
+
+impl Candidate {
+    /// The values of the effect that amplitudes of the columns stand for.
+    #[must_use]
+    pub fn values(&self, amplitudes: &[f64]) -> Vec<f64> {
+        let effect = Effect::from_name(self.effect);
+        if !self.releases.is_empty() {
+            return amplitudes.to_vec();
+        }
+        if self.effect == "torque_ripple" {
+            let size = amplitudes[0].hypot(amplitudes[1]);
+            return vec![size, self.probes[0].0[1], amplitudes[1].atan2(amplitudes[0])];
+        }
+        let mut values = self.probes[0].0.clone();
+        for (index, (probe, divisor)) in self.probes.iter().enumerate() {
+            #[allow(clippy::float_cmp, reason = "a divisor of exactly 1 marks a secant")]
+            let secant = *divisor == 1.0 && self.probes.len() == 1 && probe[0] != 1.0;
+            values[index] = if secant { probe[0] * self.secant_factor(amplitudes[index]) } else { amplitudes[index] };
+        }
+        if let Some(effect) = effect {
+            for (value, parameter) in values.iter_mut().zip(effect.parameters()) {
+                if parameter.bound != Bound::Any {
+                    *value = value.max(1e-3 * parameter.low);
+                }
+            }
+        }
+        values
+    }
+
+    /// From the amplitude of a secant to a factor of its size.
+    fn secant_factor(&self, amplitude: f64) -> f64 {
+        match self.effect {
+            // a higher limit shows less
+            "torque_saturation" => (1.0 + 0.15 * (1.0 - amplitude)).clamp(0.7, 1.3),
+            _ => amplitude.clamp(0.2, 4.0),
+        }
+    }
+}

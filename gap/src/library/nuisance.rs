@@ -1,0 +1,72 @@
+//! Nominal parameters, each known to its tolerance: what may be off without being a gap.
+
+use gimbal_model_file::Tolerance;
+
+use crate::simulate::Physics;
+
+/// Standard deviation over tolerance: a value anywhere within plus and minus its tolerance, and hardly beyond.
+const UNIFORM: f64 = 0.45;
+
+/// One nominal parameter.
+#[derive(Debug, Clone, Copy)]
+pub struct Nuisance {
+    /// What it is; the effect's name where a shift beyond the tolerance is one.
+    pub name: &'static str,
+    /// Standard deviation, in units of the shift.
+    pub sigma: f64,
+    /// Step of the finite difference.
+    pub step: f64,
+    shift: fn(&mut Physics, f64),
+}
+
+impl Nuisance {
+    /// Moves the parameter.
+    pub fn shift(&self, physics: &mut Physics, by: f64) {
+        (self.shift)(physics, by);
+    }
+}
+
+macro_rules! relative {
+    ($tolerance:expr, $name:literal, $physics:ident => $field:expr) => {
+        Nuisance {
+            name: $name,
+            sigma: UNIFORM * $tolerance,
+            step: 0.3 * $tolerance,
+            shift: |$physics: &mut Physics, by: f64| $field *= 1.0 + by,
+        }
+    };
+}
+
+/// Every nominal parameter of the platform.
+#[must_use]
+pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
+    let default = tolerance.default_relative;
+    let unbalance = &physics.config.unbalance;
+    let size = unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6);
+    let added = |name, sigma: f64, shift| Nuisance { name, sigma: UNIFORM * sigma, step: 0.3 * sigma, shift };
+    vec![
+        added("friction_level", tolerance.friction_level, |physics, by| physics.friction.level += by),
+        added("bearing viscosity", tolerance.viscous_friction, |physics, by| physics.friction.viscous_level += by),
+        added("unbalance x", tolerance.mass_unbalance * size, |physics, by| physics.config.unbalance.x_kg_m += by),
+        added("unbalance y", tolerance.mass_unbalance * size, |physics, by| physics.config.unbalance.y_kg_m += by),
+        added("accelerometer alignment", default * size, |physics, by| physics.axial_leak_kg_m += by),
+        relative!(tolerance.loop_gain, "loop_gain", p => p.config.servo.gain_nm_per_rad_s),
+        relative!(tolerance.motor_lag, "motor_lag", p => p.config.servo.motor_lag_s),
+        relative!(tolerance.gyro_damping, "gyro_damping", p => p.config.gyro.damping_nm_s_per_rad),
+        relative!(tolerance.angular_momentum, "angular_momentum", p => p.config.gyro.angular_momentum_nm_s),
+        relative!(tolerance.gimbal_inertia, "gimbal_inertia", p => p.config.servo.gimbal_inertia_kg_m2),
+        relative!(default, "float inertia", p => p.config.gyro.float_inertia_kg_m2),
+        relative!(default, "slip rate", p => p.config.bearing.slip_rate_radps),
+        relative!(default, "T1", p => p.config.servo.lead_time_constants_s[0]),
+        relative!(default, "T2", p => p.config.servo.lead_time_constants_s[1]),
+        relative!(default, "T3", p => p.config.servo.lead_time_constants_s[2]),
+        relative!(default, "T4", p => p.config.servo.lead_time_constants_s[3]),
+        relative!(default, "T5", p => p.config.servo.lead_time_constants_s[4]),
+        relative!(default, "T6", p => p.config.servo.lag_time_constants_s[0]),
+        relative!(default, "T7", p => p.config.servo.lag_time_constants_s[1]),
+        relative!(default, "T8", p => p.config.servo.lag_time_constants_s[2]),
+        relative!(default, "T9", p => p.config.servo.lag_time_constants_s[3]),
+        added("pickoff_scale", tolerance.pickoff_scale, |physics, by| physics.measurement.pickoff_scale += by),
+        added("torque_scale", tolerance.torque_scale, |physics, by| physics.measurement.torque_scale += by),
+    ]
+}

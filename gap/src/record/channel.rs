@@ -1,0 +1,52 @@
+//! A measured output.
+
+use gimbal_log::Column;
+
+/// What an output is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    /// Pick-off.
+    GyroAngle,
+    /// Motor torque.
+    MotorTorque,
+    /// Stable member against an outside reference.
+    GimbalAngle,
+}
+
+impl Signal {
+    /// All of them, in the order of channels.
+    pub const ALL: [Self; 3] = [Self::GyroAngle, Self::MotorTorque, Self::GimbalAngle];
+
+    /// Column of the log.
+    #[must_use]
+    pub fn column(self) -> Column {
+        match self {
+            Self::GyroAngle => Column::GyroAngle,
+            Self::MotorTorque => Column::MotorTorque,
+            Self::GimbalAngle => Column::GimbalAngle,
+        }
+    }
+}
+
+/// One measured output on the grid.
+#[derive(Debug, Clone)]
+pub struct Channel {
+    /// What it is.
+    pub signal: Signal,
+    /// Samples; 0 where there is none.
+    pub values: Vec<f64>,
+    /// Whether a sample counts.
+    pub valid: Vec<bool>,
+}
+
+impl Channel {
+    pub(super) fn new(signal: Signal, mut values: Vec<f64>) -> Self {
+        let valid: Vec<bool> = values.iter().map(|value| value.is_finite()).collect();
+        for value in &mut values {
+            if !value.is_finite() {
+                *value = 0.0;
+            }
+        }
+        Self { signal, values, valid }
+    }
+}

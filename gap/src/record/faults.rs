@@ -1,0 +1,171 @@
+//! Wrong sign, wrong unit, swapped axes, channels shifted in time: a log that fits the model far better once one
+//! such mistake is undone is wrong by that mistake.
+
+use gimbal_model_file::ModelFile;
+
+use super::{Record, Signal};
+use crate::simulate::{Begin, Inputs, Physics, predict};
+
+/// A mistake is told when undoing it leaves less than this share of the misfit.
+const MENDED: f64 = 0.12;
+/// Shifts between torque and angle below this are delays of the loop [s].
+const LEAST_SHIFT_S: f64 = 2e-3;
+const RAD_PER_DEG: f64 = std::f64::consts::PI / 180.0;
+
+type Change = fn(&mut Inputs);
+
+/// Mistakes of the inputs, and how they are undone.
+const INPUTS: [(&str, Change); 9] = [
+    ("vehicle_rate_radps has the wrong sign", |inputs| scale(&mut inputs.rate_radps, -1.0)),
+    ("vehicle_rate_radps seems to be in deg/s", |inputs| scale(&mut inputs.rate_radps, RAD_PER_DEG)),
+    ("vehicle_rate_radps seems to have been converted to rad/s twice", |inputs| {
+        scale(&mut inputs.rate_radps, 1.0 / RAD_PER_DEG)
+    }),
+    ("accel_x_mps2 and accel_y_mps2 are swapped", |inputs| inputs.accel_mps2.swap(0, 1)),
+    ("accel_x_mps2 and accel_z_mps2 are swapped", |inputs| inputs.accel_mps2.swap(0, 2)),
+    ("accel_y_mps2 and accel_z_mps2 are swapped", |inputs| inputs.accel_mps2.swap(1, 2)),
+    ("accel_y_mps2 has the wrong sign", |inputs| scale(&mut inputs.accel_mps2[1], -1.0)),
+    ("the accelerations seem to be in g", |inputs| inputs.accel_mps2.iter_mut().for_each(|axis| scale(axis, 9.806_65))),
+    ("all accelerations have the wrong sign", |inputs| inputs.accel_mps2.iter_mut().for_each(|axis| scale(axis, -1.0))),
+];
+
+fn scale(values: &mut [f64], by: f64) {
+    for value in values {
+        *value *= by;
+    }
+}
+
+/// Mistakes in the data, in words.
+#[must_use]
+pub fn faults(record: &Record, model: &ModelFile) -> Vec<String> {
+    let mut physics = Physics::nominal(&model.config);
+    physics.config.gyro.stop_angle_rad *= 1.5;
+    let first = |signal| record.channel(signal).map(|channel| channel.values[0]);
+    let misfit = |inputs: &Inputs| -> (f64, Vec<f64>) {
+        let begin = Begin::at(&physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque));
+        let prediction = predict(&physics, inputs, &begin, usize::MAX);
+        let ratios: Vec<f64> = record
+            .channels
+            .iter()
+            .filter(|channel| channel.signal != Signal::GimbalAngle)
+            .map(|channel| {
+                let predicted = crate::fit::predicted(channel.signal, &prediction);
+                let (mut off, mut all) = (0.0, 0.0);
+                for k in (record.rows() / 10..record.rows()).filter(|&k| channel.valid[k]) {
+                    off += (channel.values[k] - predicted[k]).powi(2);
+                    all += channel.values[k].powi(2);
+                }
+                off / all.max(1e-30)
+            })
+            .collect();
+        (ratios.iter().sum::<f64>() / ratios.len().max(1) as f64, ratios)
+    };
+    let (nominal, ratios) = misfit(&record.inputs);
+    let mut told = outputs(record, &physics, &ratios);
+    if nominal < 0.25 || !told.is_empty() {
+        return told;
+    }
+    let mut best = (MENDED * nominal, None);
+    for (name, undo) in INPUTS {
+        let mut inputs = record.inputs.clone();
+        undo(&mut inputs);
+        let begin_rad = inputs.turned_rad[0];
+        inputs.complete(&model.config.bearing, begin_rad);
+        let (mended, _) = misfit(&inputs);
+        if mended < best.0 {
+            best = (mended, Some(name));
+        }
+    }
+    told.extend(best.1.map(|name| format!("{name}: undone, the misfit falls from {nominal:.2} to {:.3}", best.0)));
+    told
+}
+
+/// Mistakes of single outputs: factor against the prediction, and shift between torque and angle.
+fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> Vec<String> {
+    let mut told = Vec::new();
+    let theta = record.channel(Signal::GyroAngle);
+    let begin = Begin::at(
+        physics,
+        &record.inputs,
+        theta.map_or(0.0, |channel| channel.values[0]),
+        record.channel(Signal::MotorTorque).map(|channel| channel.values[0]),
+    );
+    let prediction = predict(physics, &record.inputs, &begin, usize::MAX);
+    for (channel, ratio) in record.channels.iter().zip(ratios) {
+        if *ratio < 0.25 {
+            continue;
+        }
+        let predicted = crate::fit::predicted(channel.signal, &prediction);
+        let (mut cross, mut own, mut all) = (0.0, 0.0, 0.0);
+        for k in (record.rows() / 10..record.rows()).filter(|&k| channel.valid[k]) {
+            cross += channel.values[k] * predicted[k];
+            own += predicted[k] * predicted[k];
+            all += channel.values[k] * channel.values[k];
+        }
+        let factor = cross / own.max(1e-30);
+        let fits = cross * cross / (own * all).max(1e-30) > 0.6;
+        let name = channel.signal.column().name();
+        if fits && factor < -0.5 && factor > -2.0 {
+            told.push(format!("{name} has the wrong sign"));
+        } else if fits && factor.abs() > 35.0 && factor.abs() < 90.0 {
+            told.push(format!("{name} is {factor:.1} times what the model gives: the unit seems to be degrees"));
+        } else if fits && factor.abs() < 1.0 / 35.0 && factor.abs() > 1.0 / 90.0 {
+            told.push(format!(
+                "{name} is {factor:.4} times what the model gives: the unit seems to have been converted twice"
+            ));
+        }
+    }
+    if told.len() == ratios.len() && told.len() > 1 && told.iter().all(|told| told.ends_with("wrong sign")) {
+        return vec!["vehicle_rate_radps has the wrong sign, or all outputs have".to_owned()];
+    }
+    if told.is_empty()
+        && let Some(shift_s) = shift_s(record, &prediction.motor_torque_nm, &prediction.gyro_angle_rad)
+    {
+        told.push(format!(
+            "motor_torque_nm and gyro_angle_rad are shifted in time against each other by {:.1} ms",
+            1e3 * shift_s
+        ));
+    }
+    told
+}
+
+/// Time by which the torque is late against the angle, each aligned with its prediction.
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_wrap,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "rows"
+)]
+fn shift_s(record: &Record, torque: &[f64], theta: &[f64]) -> Option<f64> {
+    let period_s = record.inputs.period_s;
+    let reach = (0.06 / period_s) as i64;
+    // a shift counts when it takes away most of what is off
+    let best = |signal: Signal, predicted: &[f64]| -> Option<(i64, f64)> {
+        let channel = record.channel(signal)?;
+        let rows = record.rows() as i64;
+        let off = |shift: i64| -> f64 {
+            let mut sum = 0.0;
+            for k in ((rows / 10).max(reach)..rows - reach).step_by(3) {
+                // changes, not levels
+                let step = |values: &[f64], k: i64| values[k as usize] - values[(k - 8) as usize];
+                sum += (step(&channel.values, k) - step(predicted, k - shift)).powi(2);
+            }
+            sum
+        };
+        if rows < 4 * reach {
+            return None;
+        }
+        (-reach + 8..=reach - 8)
+            .map(|shift| (shift, off(shift)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|best| (best.0, best.1 / off(0)))
+    };
+    let (torque, theta) = (best(Signal::MotorTorque, torque)?, best(Signal::GyroAngle, theta)?);
+    if torque.1.min(theta.1) > 0.2 {
+        return None;
+    }
+    let late = torque.0 - theta.0;
+    let shift_s = late as f64 * period_s;
+    (shift_s.abs() >= LEAST_SHIFT_S - 1e-9).then_some(shift_s)
+}

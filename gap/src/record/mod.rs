@@ -1,0 +1,233 @@
+//! A log made ready: one grid, inputs filled in, outputs with a mask, and what is wrong with the data.
+
+mod channel;
+mod faults;
+mod stuck;
+
+use gimbal_log::{Column, Log};
+use gimbal_servo::Config;
+
+use crate::simulate::Inputs;
+pub use channel::{Channel, Signal};
+pub use faults::faults;
+
+/// Shortest log that a diagnosis is made from [s].
+const SHORTEST_S: f64 = 6.0;
+/// Least rms change of the vehicle rate [rad/s] and of the acceleration [m/s2] that excite anything.
+const LEAST_RATE_RADPS: f64 = 1.5e-3;
+const LEAST_ACCEL_MPS2: f64 = 0.1;
+/// Share of its largest excursion within which the pick-off counts as on the stop.
+const PLATEAU_SHARE: f64 = 4e-3;
+
+/// A log on its grid.
+#[derive(Debug, Clone)]
+pub struct Record {
+    /// Time of the first row in the log [s].
+    pub first_s: f64,
+    /// What drives the platform.
+    pub inputs: Inputs,
+    /// What is compared, `gyro_angle_rad` first.
+    pub channels: Vec<Channel>,
+    /// Angle of the stop as the pick-off shows it, when it was reached [rad].
+    pub plateau_rad: Option<f64>,
+    /// What makes a diagnosis impossible, in words.
+    pub faults: Vec<String>,
+    /// What is worth knowing.
+    pub notes: Vec<String>,
+}
+
+impl Record {
+    /// Reads a log against the nominal parameters.
+    #[must_use]
+    pub fn new(log: &Log, config: &Config) -> Self {
+        let time = log.column(Column::Time).unwrap_or_default();
+        let mut faults = Vec::new();
+        let mut notes: Vec<String> = Vec::new();
+        let report = &log.time;
+        let period_s = if report.period_s > 0.0 { report.period_s } else { 1e-3 };
+        let grid = Grid::new(time, period_s);
+        if report.jitter_rms_s > 0.05 * period_s {
+            faults.push(format!(
+                "the time stamps jitter by {:.2} ms rms: samples are not where they claim to be",
+                1e3 * report.jitter_rms_s
+            ));
+        }
+        if report.repeats > 0 || report.gaps > 0 {
+            notes.push(report.to_string());
+        }
+        if report.rates.len() > 1 {
+            faults.push("the log has no constant rate".to_owned());
+        }
+        if grid.filled * 5 > grid.rows {
+            faults.push(format!("{} of {} rows are missing", grid.filled, grid.rows));
+        }
+        let mut driven = |column: Column| -> Vec<f64> {
+            let Some(values) = log.column(column) else { return Vec::new() };
+            if let Some(stuck) = stuck::told(column.name(), values, period_s) {
+                faults.push(stuck);
+            }
+            filled(&grid.place(values))
+        };
+        let accel_mps2 = [Column::AccelX, Column::AccelY, Column::AccelZ].map(&mut driven);
+        let (rate_radps, cross_radps) = (driven(Column::VehicleRate), driven(Column::CrossRate));
+        let begin_rad = log.column(Column::RelativeAngle).and_then(|values| values.first().copied()).unwrap_or(0.0);
+        let mut inputs = Inputs { period_s, start_s: 0.0, accel_mps2, rate_radps, cross_radps, ..Inputs::default() };
+        inputs.complete(&config.bearing, if begin_rad.is_finite() { begin_rad } else { 0.0 });
+        let mut channels = Vec::new();
+        for signal in Signal::ALL {
+            let Some(values) = log.column(signal.column()) else { continue };
+            if values.iter().all(|value| value.is_nan()) {
+                continue;
+            }
+            if let Some(stuck) = stuck::told(signal.column().name(), values, period_s) {
+                faults.push(stuck);
+                continue;
+            }
+            channels.push(Channel::new(signal, grid.place(values)));
+        }
+        let mut record =
+            Self { first_s: time.first().copied().unwrap_or(0.0), inputs, channels, plateau_rad: None, faults, notes };
+        record.find_plateau(config);
+        record.look_at_excitation(grid.rows as f64 * period_s);
+        record
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// A channel by its signal.
+    #[must_use]
+    pub fn channel(&self, signal: Signal) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.signal == signal)
+    }
+
+    fn look_at_excitation(&mut self, length_s: f64) {
+        if length_s < SHORTEST_S {
+            self.faults.push(format!("{length_s:.1} s are too short; {SHORTEST_S} s are the least"));
+        }
+        let rate = deviation(&self.inputs.rate_radps);
+        let accel = self.inputs.accel_mps2.iter().map(|axis| deviation(axis)).fold(0.0, f64::max);
+        if rate < LEAST_RATE_RADPS && accel < LEAST_ACCEL_MPS2 {
+            self.faults.push("the inputs are constant: nothing is excited".to_owned());
+        }
+        if !self.channels.iter().any(|channel| channel.signal == Signal::GyroAngle) {
+            self.faults.push("no usable gyro_angle_rad".to_owned());
+        }
+    }
+
+    /// The stop shows as a plateau of the pick-off at its largest excursion; what follows it for a while is masked.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    fn find_plateau(&mut self, config: &Config) {
+        let period_s = self.inputs.period_s;
+        let Some(theta) = self.channels.iter().find(|channel| channel.signal == Signal::GyroAngle) else { return };
+        let peak = theta.values.iter().copied().filter(|value| value.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
+        if peak < 0.45 * config.gyro.stop_angle_rad {
+            return;
+        }
+        let least = (0.008 / period_s) as usize;
+        let mut on_stop = vec![false; theta.values.len()];
+        let mut level = Vec::new();
+        let mut start = 0_usize;
+        for k in 0..=theta.values.len() {
+            if k < theta.values.len() && theta.values[k].abs() > peak * (1.0 - PLATEAU_SHARE) {
+                continue;
+            }
+            // it comes in with a rate, and stands still at once
+            let before = start.checked_sub(least).map_or(0.0, |before| theta.values[before].abs());
+            if k - start > least && start >= least && before < peak * (1.0 - 10.0 * PLATEAU_SHARE) {
+                level.extend(theta.values[start..k].iter().map(|value| value.abs()));
+                on_stop[start..k].fill(true);
+            }
+            start = k + 1;
+        }
+        if level.is_empty() {
+            return;
+        }
+        level.sort_by(f64::total_cmp);
+        self.plateau_rad = Some(level[level.len() / 2]);
+        let settle = (2.0 / period_s) as usize;
+        let mut wait = 0;
+        for (k, on_stop) in on_stop.iter().enumerate() {
+            wait = if *on_stop { settle } else { wait.saturating_sub(1) };
+            if wait > 0 {
+                for channel in &mut self.channels {
+                    channel.valid[k] = false;
+                }
+            }
+        }
+        self.notes.push(format!(
+            "the float was on a stop for {:.2} s; masked with 2 s after each",
+            level.len() as f64 * period_s
+        ));
+    }
+}
+
+/// Where the rows of a log stand on an even grid.
+struct Grid {
+    places: Vec<usize>,
+    rows: usize,
+    filled: usize,
+}
+
+impl Grid {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    fn new(time: &[f64], period_s: f64) -> Self {
+        let first = time.first().copied().unwrap_or(0.0);
+        let places: Vec<usize> =
+            time.iter().map(|time| ((time - first) / period_s).round().max(0.0) as usize).collect();
+        let rows = places.last().map_or(0, |last| last + 1).min(20 * time.len().max(1));
+        Self { filled: rows.saturating_sub(time.len()), places, rows }
+    }
+
+    /// Values on the grid; NaN where there is none.
+    fn place(&self, values: &[f64]) -> Vec<f64> {
+        let mut placed = vec![f64::NAN; self.rows];
+        for (place, value) in self.places.iter().zip(values) {
+            if let Some(slot) = placed.get_mut(*place) {
+                *slot = *value;
+            }
+        }
+        placed
+    }
+}
+
+/// Straight lines over missing samples.
+fn filled(values: &[f64]) -> Vec<f64> {
+    let mut out = values.to_vec();
+    let mut last: Option<usize> = None;
+    for k in 0..out.len() {
+        if !out[k].is_finite() {
+            continue;
+        }
+        match last {
+            None => {
+                let value = out[k];
+                out[..k].fill(value);
+            }
+            Some(from) if k > from + 1 => {
+                for between in from + 1..k {
+                    let share = (between - from) as f64 / (k - from) as f64;
+                    out[between] = out[from] + share * (out[k] - out[from]);
+                }
+            }
+            Some(_) => {}
+        }
+        last = Some(k);
+    }
+    match last {
+        Some(from) => {
+            let value = out[from];
+            out[from..].fill(value);
+        }
+        None => out.fill(0.0),
+    }
+    out
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}

@@ -1,0 +1,84 @@
+//! A few lines that a person can act on.
+
+use std::fmt::Write;
+
+use gimbal_plant::Effect;
+
+use crate::diagnose::Diagnosis;
+use crate::judge::{Verdict, experiment};
+
+/// The verdict in words.
+#[must_use]
+pub fn text(diagnosis: &Diagnosis) -> String {
+    let mut out = String::new();
+    let Some(decision) = &diagnosis.decision else {
+        for fault in &diagnosis.record.faults {
+            let _ = writeln!(out, "The data do not serve: {fault}.");
+        }
+        return out.trim_end().to_owned();
+    };
+    let named: Vec<String> = decision
+        .found
+        .iter()
+        .map(|found| sentence(found.effect, found.probability, &found.values, &found.errors))
+        .collect();
+    let _ = match diagnosis.verdict() {
+        Verdict::NoGap => writeln!(out, "No gap: nothing beyond noise and the tolerance of the parameters."),
+        Verdict::Explained => writeln!(out, "Explained by {}.", named.join(" and ")),
+        Verdict::PartlyExplained => writeln!(
+            out,
+            "Partly explained by {}; something else remains ({:.0} times the noise, 0.3 to 20 Hz).",
+            named.join(" and "),
+            decision.left_over[1]
+        ),
+        Verdict::Unexplained => writeln!(
+            out,
+            "A gap that no effect of the library explains ({:.0} times the noise, 0.3 to 20 Hz).",
+            decision.left_over[0]
+        ),
+        Verdict::CannotTell => writeln!(out, "Cannot tell: {} or one of these:", named.join(" and ")),
+    };
+    for set in &decision.alternatives {
+        let own = decision.found.first().map_or("", |found| found.effect);
+        let other = set.effects.iter().find(|effect| !decision.found.iter().any(|found| found.effect == **effect));
+        let told = experiment(own, other.copied().unwrap_or_default());
+        let _ = writeln!(
+            out,
+            "  {} ({:.0} %); to tell them apart: {told}",
+            set.effects.join(" + "),
+            100.0 * set.probability
+        );
+    }
+    if diagnosis.verdict() != Verdict::NoGap
+        && let Some(shrink) = &diagnosis.shrink
+    {
+        for signal in &shrink.signals {
+            let [low, high] = signal.ci95_percent;
+            let _ = writeln!(
+                out,
+                "  {}: rms {:.3e} to {:.3e} {} on blocks not fitted, noise {:.1e}: {:.1} % of the gap gone ({low:.1} to {high:.1})",
+                signal.name, signal.before, signal.after, signal.unit, signal.noise_floor, signal.reduction_percent
+            );
+        }
+        let _ = writeln!(
+            out,
+            "  velocity error over the log: {:.3e} to {:.1e} m/s",
+            shrink.velocity_before_mps, shrink.velocity_after_mps
+        );
+    }
+    out.trim_end().to_owned()
+}
+
+fn sentence(name: &str, probability: f64, values: &[f64], errors: &[f64]) -> String {
+    let parameters: Vec<String> = Effect::from_name(name)
+        .map(Effect::parameters)
+        .unwrap_or_default()
+        .iter()
+        .zip(values.iter().zip(errors))
+        .map(|(parameter, (value, error))| {
+            let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
+            format!("{} {value:.3e} +- {error:.0e}{unit}", parameter.name)
+        })
+        .collect();
+    format!("{name} ({:.0} %; {})", 100.0 * probability.min(1.0), parameters.join(", "))
+}
