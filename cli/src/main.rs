@@ -8,11 +8,13 @@
 mod blind;
 mod convert;
 mod exit;
+mod figures;
 mod interrupt;
 mod plot;
 mod progress;
 mod report;
 mod run;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -34,6 +36,8 @@ enum Command {
     Blind(blind::Args),
     /// Turns a foreign CSV file into a log: names, units, axes, one constant rate.
     Convert(convert::Args),
+    /// Redraws the paper's figures and checks its numbers.
+    Figures(figures::Args),
     /// Runs a log through the model; without one, the paper's two 20 g cases.
     Run(run::Args),
 }
@@ -47,6 +51,7 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Some(Command::Blind(args)) => blind::blind(args),
         Some(Command::Convert(args)) => convert::convert(args),
+        Some(Command::Figures(args)) => figures::figures(args),
         Some(Command::Run(args)) => run::run(args),
         None => run::run_default(&cli.run),
     };

@@ -1,13 +1,24 @@
-//! Pictures over time in one style: panels below each other, one time axis, readable in grey.
+//! Pictures in one style, readable in grey: panels over time below each other, and charts of one quantity over another.
 //!
 //! Lines differ in lightness and in dashes, not in hue alone. Sizes are in pixels of the SVG.
 
+mod bitmap;
+mod chart;
 mod envelope;
+mod simplify;
 
+#[allow(unused_imports, reason = "fields are drawn by sweeps")]
+pub(crate) use chart::{Axis, Chart, Field, Look, Series};
 pub(crate) use envelope::Envelope;
+
+use std::error::Error;
+use std::sync::Once;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::register_font;
+
+use simplify::simplified;
 
 const WIDTH: u32 = 1000;
 const TITLE_HEIGHT: u32 = 44;
@@ -24,6 +35,45 @@ const FONT: &str = "sans-serif";
 const INK: RGBColor = RGBColor(34, 34, 34);
 const GRID: RGBColor = RGBColor(214, 214, 214);
 const SHADE: RGBColor = RGBColor(222, 204, 160);
+
+/// Letters of all pictures: their widths lay the SVG out, their shapes fill the bitmap.
+static LETTERS: &[u8] = include_bytes!("plot/dejavu-sans-subset.ttf");
+
+/// Something that can be drawn, as SVG or as PNG.
+pub(crate) trait Picture {
+    /// Width and height [px].
+    fn size(&self) -> (u32, u32);
+
+    /// Draws it.
+    fn draw_on<B: DrawingBackend>(&self, root: &DrawingArea<B, Shift>) -> Result<(), Box<dyn Error>>
+    where
+        B::ErrorType: 'static;
+}
+
+/// A picture as SVG.
+pub(crate) fn svg(picture: &impl Picture) -> Result<String, String> {
+    register_letters();
+    let mut svg = String::new();
+    let root = SVGBackend::with_string(&mut svg, picture.size()).into_drawing_area();
+    let drawn = picture.draw_on(&root).and_then(|()| Ok(root.present()?));
+    drop(root);
+    drawn.map_err(|error| format!("the picture cannot be drawn: {error}"))?;
+    Ok(svg)
+}
+
+/// A picture as PNG, two pixels of it to one of the SVG.
+pub(crate) fn png(picture: &impl Picture) -> Result<Vec<u8>, String> {
+    register_letters();
+    bitmap::png(picture).map_err(|error| format!("the picture cannot be drawn: {error}"))
+}
+
+fn register_letters() {
+    static DONE: Once = Once::new();
+    DONE.call_once(|| {
+        // Letters that cannot be read show when the picture is drawn.
+        let _ = register_font(FONT, FontStyle::Normal, LETTERS);
+    });
+}
 
 /// Colour, width, and dash and gap of a line.
 type Style = (RGBColor, u32, Option<(i32, i32)>);
@@ -45,6 +95,11 @@ impl<'a> Line<'a> {
     /// A line through an envelope.
     pub(crate) fn new(name: &'a str, envelope: &Envelope) -> Self {
         Self { name, points: envelope.points() }
+    }
+
+    /// A line through points, which need no thinning out.
+    pub(crate) fn through(name: &'a str, points: Vec<(f64, f64)>) -> Self {
+        Self { name, points }
     }
 }
 
@@ -74,15 +129,20 @@ pub(crate) struct Figure<'a> {
 impl Figure<'_> {
     /// The picture as SVG.
     pub(crate) fn draw(&self) -> Result<String, String> {
-        let mut svg = String::new();
-        self.draw_into(&mut svg).map_err(|error| format!("the picture cannot be drawn: {error}"))?;
-        Ok(svg)
+        svg(self)
+    }
+}
+
+impl Picture for Figure<'_> {
+    fn size(&self) -> (u32, u32) {
+        let count = u32::try_from(self.panels.len()).unwrap_or(1);
+        (WIDTH, TITLE_HEIGHT + count * PANEL_HEIGHT + TIME_LABEL_HEIGHT)
     }
 
-    fn draw_into(&self, svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
-        let count = u32::try_from(self.panels.len())?;
-        let height = TITLE_HEIGHT + count * PANEL_HEIGHT + TIME_LABEL_HEIGHT;
-        let root = SVGBackend::with_string(svg, (WIDTH, height)).into_drawing_area();
+    fn draw_on<B: DrawingBackend>(&self, root: &DrawingArea<B, Shift>) -> Result<(), Box<dyn Error>>
+    where
+        B::ErrorType: 'static,
+    {
         root.fill(&WHITE)?;
         root.draw(&Text::new(clipped(self.title), (i32::try_from(LEFT)?, 14), (FONT, 17).into_font().color(&INK)))?;
         let (_, below) = root.split_vertically(TITLE_HEIGHT);
@@ -95,21 +155,26 @@ impl Figure<'_> {
             self.draw_panel(panel, &area, span, (index == 0, last))?;
             rest = next;
         }
-        root.present()?;
         Ok(())
     }
+}
 
-    fn draw_panel(
+impl Figure<'_> {
+    fn draw_panel<B: DrawingBackend>(
         &self,
         panel: &Panel,
-        area: &DrawingArea<SVGBackend, Shift>,
+        area: &DrawingArea<B, Shift>,
         (from_s, to_s): (f64, f64),
         (first, last): (bool, bool),
-    ) -> Result<(), Box<dyn std::error::Error>> {
+    ) -> Result<(), Box<dyn Error>>
+    where
+        B::ErrorType: 'static,
+    {
         let values = || panel.lines.iter().flat_map(|line| line.points.iter().map(|(_, value)| *value));
         let least = values().fold(0.0, f64::min);
         let most = values().fold(0.0, f64::max);
-        let (factor, prefix) = prefix(most.max(-least));
+        // The paper's degrees take no prefix.
+        let (factor, prefix) = if panel.unit == "deg" { (1.0, "") } else { prefix(most.max(-least)) };
         let (least, most) = if most > least { (least * factor, most * factor) } else { (-1.0, 1.0) };
         let margin = 0.06 * (most - least);
         let mut chart = ChartBuilder::on(area)
@@ -142,7 +207,9 @@ impl Figure<'_> {
         mesh.draw()?;
         for (line, (color, width, dash)) in panel.lines.iter().zip(STYLES) {
             let style = color.stroke_width(width);
-            let points: Vec<(f64, f64)> = line.points.iter().map(|&(time_s, value)| (time_s, value * factor)).collect();
+            let points = line.points.iter().map(|&(time_s, value)| (time_s, value * factor)).collect();
+            let pixel = ((to_s - from_s) / f64::from(WIDTH), (most - least) / f64::from(PANEL_HEIGHT));
+            let points: Vec<(f64, f64)> = simplified(points, pixel);
             // Dashes on a band of noise show nothing, and there would be a hundred thousand of them.
             match dash.filter(|_| path_px(&points, most - least) < MOST_DASHED_PX) {
                 None => chart.draw_series(LineSeries::new(points, style)).map(|_| ())?,
@@ -155,33 +222,27 @@ impl Figure<'_> {
     }
 
     /// Name and unit on the left, legend on the right.
-    fn caption(
+    fn caption<B: DrawingBackend>(
         &self,
         panel: &Panel,
         prefix: &str,
         first: bool,
-        area: &DrawingArea<SVGBackend, Shift>,
-    ) -> Result<(), Box<dyn std::error::Error>> {
+        area: &DrawingArea<B, Shift>,
+    ) -> Result<(), Box<dyn Error>>
+    where
+        B::ErrorType: 'static,
+    {
         let font = || (FONT, 15).into_font().color(&INK);
         let title = format!("{} [{prefix}{}]", panel.title, panel.unit);
         area.draw(&Text::new(title, (i32::try_from(LEFT)?, 6), font()))?;
         let mut x = i32::try_from(WIDTH - RIGHT)?;
         let y = 13;
-        for (line, (color, width, dash)) in panel.lines.iter().zip(STYLES).rev() {
+        for (line, (color, width, dash)) in
+            panel.lines.iter().zip(STYLES).rev().filter(|(line, _)| !line.name.is_empty())
+        {
             x -= width_of(line.name);
             area.draw(&Text::new(line.name.to_owned(), (x, 6), font()))?;
-            let sample = vec![(x - 40, y), (x - 8, y)];
-            match dash {
-                None => area.draw(&PathElement::new(sample, color.stroke_width(width)))?,
-                Some((on, off)) => {
-                    let mut at = x - 40;
-                    while at < x - 8 {
-                        let end = (at + on).min(x - 8);
-                        area.draw(&PathElement::new(vec![(at, y), (end, y)], color.stroke_width(width)))?;
-                        at += on + off;
-                    }
-                }
-            }
+            draw_sample(area, (x - 40, x - 8, y), (color, width, dash))?;
             x -= 64;
         }
         if first && !self.shaded.is_empty() {
@@ -199,15 +260,38 @@ impl Figure<'_> {
     }
 }
 
+/// A piece of a line, for a legend: from and to in x, and y.
+fn draw_sample<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    (from, to, y): (i32, i32, i32),
+    (color, width, dash): Style,
+) -> Result<(), Box<dyn Error>>
+where
+    B::ErrorType: 'static,
+{
+    let (on, off) = dash.unwrap_or((to - from, 1));
+    let mut at = from;
+    while at < to {
+        let end = (at + on).min(to);
+        area.draw(&PathElement::new(vec![(at, y), (end, y)], color.stroke_width(width)))?;
+        at += on + off;
+    }
+    Ok(())
+}
+
 /// Length of a line on paper, up and down, in pixels.
 fn path_px(points: &[(f64, f64)], range: f64) -> f64 {
     let ways = points.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs());
     ways.sum::<f64>() / range * f64::from(PANEL_HEIGHT)
 }
 
-/// Width of a text in the captions, roughly.
+/// Width of a text in the captions.
 fn width_of(text: &str) -> i32 {
-    i32::try_from(text.chars().count()).map_or(0, |count| count * 8)
+    let width = (FONT, 15).into_font().box_size(text).map(|(width, _)| width);
+    width.map_or_else(
+        |_| i32::try_from(text.chars().count()).map_or(0, |count| count * 8),
+        |width| i32::try_from(width).unwrap_or(0),
+    )
 }
 
 /// Factor and prefix that bring a size into 1..1000.

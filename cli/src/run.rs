@@ -1,12 +1,12 @@
 //! `gimbal run`: a log, the paper's cases or a torque step through the model.
 
 mod drive;
-mod flight;
-mod model;
+pub(crate) mod flight;
+pub(crate) mod model;
 mod output;
 mod picture;
-mod profile;
-mod reference;
+pub(crate) mod profile;
+pub(crate) mod reference;
 mod source;
 mod summary;
 
@@ -85,9 +85,15 @@ impl Options {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = &args.options;
     let model = model_file(options.model.as_deref())?;
+    if let Some(plot) = options.plot.as_deref().filter(|plot| plot.extension().is_none_or(|end| end != "svg")) {
+        return Err(Failure::input(format!("{}: pictures are SVG; give a name that ends in .svg", plot.display())));
+    }
     match (&args.log, options.disturbance_nm) {
         (Some(_), Some(_)) => Err(Failure::input("a log and --disturbance-nm exclude each other; give one of them")),
         (Some(log), None) => {
+            for written in options.out.iter().chain(&options.plot) {
+                Failure::unless_other_file(log, written)?;
+            }
             let summary = run_log(log, &model, options)?;
             report::print(&summary.text(), options.json.then(|| summary.json()).as_ref())
         }
