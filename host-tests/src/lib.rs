@@ -7,6 +7,7 @@ pub mod axis;
 pub mod compare;
 pub mod digests;
 pub mod estimate;
+pub mod estimate_faults;
 pub mod estimate_figures;
 pub mod exact;
 pub mod figures;
