@@ -8,13 +8,15 @@
 //! ```
 //! use gimbal_servo::{Config, Faults, Input};
 //!
-//! let law = Config::consistent().build::<f32>()?; // once; `Fixed` instead of `f32` where there is no FPU
+//! let law = Config::consistent().build::<f32>()?; // once
 //! let mut state = law.start();
 //! // once a millisecond:
 //! let output = law.step(&mut state, Input { accel_y_mps2: 196.1, vehicle_rate_radps: 0.1, ..Input::default() });
 //! assert!(output.faults == Faults::NONE);
 //! # Ok::<(), gimbal_servo::BuildError>(())
 //! ```
+//!
+//! With [`Fixed`] instead of `f32` signals are fractions of full scales; [`Units::input`] and [`Units::output`] translate.
 //!
 //! Three kinds of value, three lives: a [`Config`] in SI, which may be wrong; a [`Law`], quantised and immutable; a
 //! [`State`], plain data. Only `build` can fail. `step` does not allocate, panic, loop without bound or read a clock;

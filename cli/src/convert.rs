@@ -79,6 +79,7 @@ enum Frame {
 
 /// Converts.
 pub(crate) fn convert(args: &Args) -> Result<(), Failure> {
+    Failure::unless_other_file(&args.file, &args.out)?;
     let unreadable = |error| LogError::unreadable(&args.file, error);
     let names = import::header_names(Watched::open(&args.file).map_err(unreadable)?, &args.file)?;
     let altos = args.format == Format::Altos || (args.format == Format::Auto && import::is_altos(&names));

@@ -35,6 +35,19 @@ impl Failure {
         Self::Input(anyhow::Error::msg(message.into()))
     }
 
+    /// A file to be written is the one that is read.
+    pub(crate) fn unless_other_file(read: &std::path::Path, written: &std::path::Path) -> Result<(), Self> {
+        let same = match (read.canonicalize(), written.canonicalize()) {
+            (Ok(read), Ok(written)) => read == written && read.is_file(),
+            _ => false,
+        };
+        if same {
+            let name = written.display();
+            return Err(Self::input(format!("{name}: is the file that is read; write to another one")));
+        }
+        Ok(())
+    }
+
     /// A file cannot be written.
     pub(crate) fn write(path: &std::path::Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();

@@ -149,7 +149,7 @@ pub enum Problem {
     #[error("a quoted cell that begins here is not closed; close it with `\"`")]
     OpenQuote,
     /// Text in a cell for a number.
-    #[error("`{text}` is not a number; write a number in {unit}, or leave the cell empty for a missing sample")]
+    #[error("`{text}` is not a number; write a number in {unit}{}", or_nothing(unit))]
     NotANumber {
         /// The text.
         text: String,
@@ -157,7 +157,7 @@ pub enum Problem {
         unit: String,
     },
     /// Infinite, or too large for a double.
-    #[error("`{text}` is not finite; write a number in {unit}, or leave the cell empty for a missing sample")]
+    #[error("`{text}` is not finite; write a number in {unit}{}", or_nothing(unit))]
     NotFinite {
         /// The text.
         text: String,
@@ -212,4 +212,9 @@ pub(crate) fn clip(bytes: &[u8]) -> String {
         clipped.push_str("...");
     }
     clipped
+}
+
+/// A sample may be missing, its time may not.
+fn or_nothing(unit: &str) -> &'static str {
+    if unit == "s" { "" } else { ", or leave the cell empty for a missing sample" }
 }

@@ -122,10 +122,12 @@ impl<N: Number> Law<N> {
         };
         let rest = N::ONE - arc.root();
         let released = self.stop.release.released(&state.held, stop, sensed_rate, rest);
+        // Nothing a platform can do carries the float across within a period; absurd parameters can.
+        let gyro_angle = released.gyro_angle.least(self.stop.angle).most(-self.stop.angle);
         let torque = self.motor_full_scale(state.torque);
         let [z1, z2, z3, z4, z5] = released.lags;
         let integrator = N::narrow(state.held.integrator) - torque;
-        let physical = [integrator, z1, z2, z3, z4, z5, released.gyro_angle, released.gyro_rate, sensed_rate];
+        let physical = [integrator, z1, z2, z3, z4, z5, gyro_angle, released.gyro_rate, sensed_rate];
         state.free = core::array::from_fn(|i| self.free.entry[i].increment(&physical));
         state.offset = state.held.gimbal_angle - released.gimbal_angle;
         state.regime = Regime::Free;
@@ -133,10 +135,10 @@ impl<N: Number> Law<N> {
         Moved {
             gimbal_angle: state.held.gimbal_angle,
             sensed_rate,
-            gyro_angle: released.gyro_angle,
+            gyro_angle,
             motor_torque: self
                 .stop
-                .motor_torque(&[N::narrow(state.held.integrator), z1, z2, z3, z4, z5], released.gyro_angle),
+                .motor_torque(&[N::narrow(state.held.integrator), z1, z2, z3, z4, z5], gyro_angle),
             stop_change_age: rest,
         }
     }
