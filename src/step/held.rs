@@ -136,9 +136,7 @@ impl<N: Number> Law<N> {
             gimbal_angle: state.held.gimbal_angle,
             sensed_rate,
             gyro_angle,
-            motor_torque: self
-                .stop
-                .motor_torque(&[N::narrow(state.held.integrator), z1, z2, z3, z4, z5], gyro_angle),
+            motor_torque: self.stop.motor_torque(&[N::narrow(state.held.integrator), z1, z2, z3, z4, z5], gyro_angle),
             stop_change_age: rest,
         }
     }
