@@ -192,6 +192,7 @@ impl<N: Number> Law<N> {
         let delay = config.sensors.delay_s / period;
         let seen = filter.seen_row(delay);
         let ahead = filter.ahead(delay + config.horizon_s / period)[0];
+        let ahead_scale = Row::<N, 5>::exponent(ahead, signals).max(scale);
         let now = filter.seen_row(0.0);
         let seen_gain: f64 = now.iter().zip(&filter.gain).map(|(row, gain)| row * gain).sum();
         let read = libm::hypot(config.sensors.gyro_noise_rad, config.sensors.gyro_step_rad / libm::sqrt(12.0));
@@ -213,8 +214,8 @@ impl<N: Number> Law<N> {
             zone: angle(zone),
             rest: angle(stop),
             seen: Row::build(seen, signals, units.gimbal_angle),
-            ahead: Row::build(ahead.map(|x| 0.25 * x), signals, scale),
-            stop: N::quantise(0.25 * stop, scale),
+            ahead: Row::build(ahead, signals, ahead_scale),
+            stop: N::quantise(stop, ahead_scale),
             ratio_share: share::<N>(libm::hypot(tolerance.damping, tolerance.angular_momentum)),
             noise: N::quantise(seen_noise, units.gimbal_angle),
             level_gain: N::coef(1.0 / 16.0),
