@@ -202,6 +202,10 @@ impl<N: Number> Law<N> {
         state.gyro_rejected = 0;
     }
 
+    pub(crate) fn torque_measured(&self) -> bool {
+        self.torque_measured
+    }
+
     /// Whether the next row needs a closer look.
     pub(crate) fn watches(&self, state: &State) -> bool {
         !self.torque_measured || *state != State::default()

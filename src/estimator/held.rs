@@ -110,7 +110,7 @@ impl<N: Number> Law<N> {
         inputs_well: bool,
     ) {
         let rate = N::narrow(state.rate);
-        let modelled = if inputs_well { self.modelled(axis, model, rate) } else { state.modelled };
+        let modelled = if inputs_well { modelled_torque(axis, model, rate) } else { state.modelled };
         let mean = (state.modelled.half() + modelled.half()).shift_down(self.torque_shift);
         state.modelled = modelled;
         let net = state.surplus + mean - torque;
@@ -127,12 +127,6 @@ impl<N: Number> Law<N> {
             N::confine(state.torque_angle + self.angle_change.increment(&[doubt_rate, state.torque_bound]));
         state.torque_rate = N::confine(state.torque_rate + self.rate_change.increment(&[state.torque_bound]));
         state.time = state.time + self.tick;
-    }
-
-    /// The modelled disturbance with the bearing's rate as phi' makes it.
-    pub(crate) fn modelled(&self, axis: &crate::Law<N>, model: &ModelState<N>, rate: N) -> N {
-        let relative = model.row.vehicle_rate_radps - rate.shift_down(axis.rate_shift);
-        model.other_torque + model.friction_level.times(axis.friction.clamp(relative))
     }
 
     /// A rate times the time since contact.
@@ -161,4 +155,10 @@ impl<N: Number> Law<N> {
         let [a, b, c, d] = self.modes(state).map(|(angle, _)| angle);
         root_sum.of_all(&[state.first_bound, a, b, c, d])
     }
+}
+
+/// The modelled disturbance with the bearing's rate as phi' makes it.
+pub(crate) fn modelled_torque<N: Number>(axis: &crate::Law<N>, model: &ModelState<N>, rate: N) -> N {
+    let relative = model.row.vehicle_rate_radps - rate.shift_down(axis.rate_shift);
+    model.other_torque + model.friction_level.times(axis.friction.clamp(relative))
 }

@@ -425,6 +425,10 @@ impl<N: Number> Law<N> {
         }
         let troubled = admitted.flags.bits() & TROUBLE.bits() != 0 && !state.health.torque_waits();
         state.trouble = if troubled { TROUBLED_ROWS } else { state.trouble.saturating_sub(1) };
+        if !self.health.torque_measured() {
+            // Half a period on from the last row, along the line through the last two.
+            mean = state.torque + (state.torque - state.torque_waiting).half();
+        }
         let last_gyro = state.gyro;
         if let Some(gyro) = measured.gyro_angle_rad.filter(|gyro| gyro.is_number()) {
             state.gyro = gyro;
@@ -434,11 +438,33 @@ impl<N: Number> Law<N> {
             Regime::Free => self.step_free(state, &admitted, mean, last_gyro, axis, model),
             Regime::Held(side) => self.step_on_stop(state, &admitted, mean, side, axis, model),
         };
+        if !self.health.torque_measured() {
+            self.follow_servo(state);
+        }
         state.watched = state.regime != Regime::Free
             || state.settling > 0
             || state.trouble > 0
             || self.health.watches(&state.health);
         estimate
+    }
+
+    /// (3) over the period just past, theta along a line.
+    fn follow_servo(&self, state: &mut State<N>) {
+        let theta = match state.regime {
+            Regime::Held(_) => state.held.stop.shift_down(self.shift),
+            Regime::New | Regime::Free => N::head(state.filter[0]),
+        };
+        let servo = &self.servo;
+        let change = theta - state.servo_theta;
+        let [integrator, lags @ ..] = &mut state.servo;
+        *integrator = N::confine(*integrator + servo.integrator.increment(&[state.servo_theta, theta]));
+        for (lag, (decay, gain)) in lags.iter_mut().zip(servo.decay.iter().zip(&servo.lags)) {
+            *lag = N::confine(N::low(*lag) + *decay * N::narrow(*lag) + gain.increment(&[change]));
+        }
+        state.servo_theta = theta;
+        state.torque_waiting = state.torque;
+        let [y, a, b, c, d, e] = state.servo.map(N::narrow);
+        state.torque = servo.torque.at(&[y, a, b, c, d, e, theta]);
     }
 
     /// The first row, or the first with theta.
@@ -560,7 +586,7 @@ impl<N: Number> Law<N> {
         let rate = self.rate.increment(&[p, excess]) - self.contact.increment(w, side.mirror(excess), side);
         let torque = self.torque.times(state.level);
         let moved = self.torque.times(d - state.level).half();
-        let modelled = self.held.modelled(axis, model, N::narrow(rate));
+        let modelled = held::modelled_torque(axis, model, N::narrow(rate));
         let coupling = N::head(self.held.rate_share * self.coupling.times(w).abs());
         let noise = self.root_sum.of(self.noise + state.transient, state.offset_bound);
         let seen_doubt = N::head(self.ratio_share * N::narrow(seen).abs());

@@ -41,6 +41,7 @@ pub struct State<N: Number> {
     pub(crate) held: held::State<N>,
     /// The servo as it follows theta, where the motor torque is not measured.
     pub(crate) servo: [N::Wide; 6],
+    pub(crate) servo_theta: N,
     /// Bits that stay set.
     pub(crate) lasting: Flags,
 }
@@ -76,6 +77,7 @@ impl<N: Number> State<N> {
             waits: 0,
             held: held::State::default(),
             servo: [N::Wide::default(); 6],
+            servo_theta: N::ZERO,
             lasting: Flags::NONE,
         }
     }
