@@ -34,7 +34,7 @@ pub struct Found {
 fn flights(random: &mut Random, config: &estimator::Config) -> Vec<(Flight, Estimated)> {
     let nominal = Config::consistent();
     let fly = |seed: u64| {
-        let rows = if seed % 2 == 0 {
+        let rows = if seed.is_multiple_of(2) {
             inputs::manoeuvre(4.0, 1e-3, seed).split_off(1000)
         } else {
             let sign = if seed % 4 == 1 { 1.0 } else { -1.0 };

@@ -291,6 +291,9 @@ fn see(
 }
 
 /// [`watch`] with the plant as truth.
+///
+/// # Panics
+/// If the preset does not build.
 #[must_use]
 pub fn watch_plant(minutes: u32, seed: u64) -> Watch {
     let (law, nominal) = (monitor_law(0.0), Config::consistent());
