@@ -50,12 +50,11 @@ fn bristle(before: f64, displacement: f64, path: Path) -> f64 {
 /// Exact for a rate that runs along a line.
 fn maxwell(before: f64, displacement: f64, rate_before: f64, path: Path) -> f64 {
     let stiffness = path.time_s * path.slip_radps / displacement;
-    if stiffness < 1e-3 {
-        let moved = before + 0.5 * path.time_s * (rate_before + path.rate_radps) / displacement;
-        return (moved - stiffness * before).clamp(-1.0, 1.0);
+    if stiffness <= 0.0 {
+        return before;
     }
     let left = libm::exp(-stiffness);
-    let mean = (1.0 - left) / stiffness;
+    let mean = -libm::expm1(-stiffness) / stiffness;
     let now = path.rate_radps / path.slip_radps * (1.0 - mean);
     (before * left + now + rate_before / path.slip_radps * (mean - left)).clamp(-1.0, 1.0)
 }
