@@ -97,6 +97,7 @@ pub struct Decision {
 
 /// Judges what the search found.
 #[must_use]
+#[allow(clippy::too_many_lines, reason = "one decision, told in its order")]
 pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Decision {
     let count = problem.whitener.count() as f64;
     let best_square = search.fits.iter().map(|fit| fit.square).fold(search.null.square, f64::min);

@@ -62,7 +62,7 @@ pub fn shrink(problem: &Problem, fit: &Fit) -> Shrink {
             // squares of before and after, piece by piece
             let mut pieces = vec![(0.0, 0.0, 0.0); PIECES];
             for k in (0..rows).filter(|&k| channel.valid[k]) {
-                let fold = usize::from((k * BLOCKS / rows) % 2 == 0);
+                let fold = usize::from((k * BLOCKS / rows).is_multiple_of(2));
                 let piece = &mut pieces[k * PIECES / rows];
                 piece.0 += before[place][k] * before[place][k];
                 piece.1 += residuals[fold][place][k] * residuals[fold][place][k];

@@ -111,9 +111,9 @@ fn grid(effect: Effect, settings: &[Vec<f64>]) -> Vec<Candidate> {
         let probes = (0..effect.sizes())
             .map(|size| {
                 let mut probe = values.clone();
-                for other in 0..effect.sizes() {
+                for (other, value) in probe.iter_mut().enumerate().take(effect.sizes()) {
                     if other != size {
-                        probe[other] = 0.0;
+                        *value = 0.0;
                     }
                 }
                 let divisor = probe[size];

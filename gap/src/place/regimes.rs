@@ -20,6 +20,7 @@ const FALSE_DISCOVERIES: f64 = 0.05;
 /// Regimes that hold more of the contribution than of the time.
 #[must_use]
 pub fn regimes(record: &Record, prediction: &Prediction, contribution: &[f64], channels: usize) -> Vec<Regime> {
+    type Test<'a> = Box<dyn Fn(usize) -> bool + 'a>;
     let rows = record.rows();
     let inputs = &record.inputs;
     let radial: Vec<f64> = inputs.accel_mps2[0].iter().zip(&inputs.accel_mps2[1]).map(|(x, y)| x.hypot(*y)).collect();
@@ -32,7 +33,6 @@ pub fn regimes(record: &Record, prediction: &Prediction, contribution: &[f64], c
     let slow = 0.02;
     let rel: Vec<f64> = inputs.turned_rad.iter().map(|value| value.abs()).collect();
     let rel_high = quantile(&rel, 0.67);
-    type Test<'a> = Box<dyn Fn(usize) -> bool + 'a>;
     let tests: [(&'static str, Test); 11] = [
         ("reversal of the rate", Box::new(|k| w[k].abs() < slow)),
         ("positive slip", Box::new(|k| w[k] >= slow)),

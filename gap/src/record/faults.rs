@@ -19,7 +19,7 @@ const INPUTS: [(&str, Change); 9] = [
     ("vehicle_rate_radps has the wrong sign", |inputs| scale(&mut inputs.rate_radps, -1.0)),
     ("vehicle_rate_radps seems to be in deg/s", |inputs| scale(&mut inputs.rate_radps, RAD_PER_DEG)),
     ("vehicle_rate_radps seems to have been converted to rad/s twice", |inputs| {
-        scale(&mut inputs.rate_radps, 1.0 / RAD_PER_DEG)
+        scale(&mut inputs.rate_radps, 1.0 / RAD_PER_DEG);
     }),
     ("accel_x_mps2 and accel_y_mps2 are swapped", |inputs| inputs.accel_mps2.swap(0, 1)),
     ("accel_x_mps2 and accel_z_mps2 are swapped", |inputs| inputs.accel_mps2.swap(0, 2)),
