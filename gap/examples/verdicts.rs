@@ -2,6 +2,18 @@
 //!
 //! One line a log, and a count at the end; SIZE multiplies the typical size of every effect.
 
+#![allow(
+    missing_docs,
+    unreachable_pub,
+    dead_code,
+    clippy::must_use_candidate,
+    clippy::missing_panics_doc,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::redundant_closure_for_method_calls,
+    reason = "a corpus for experiments, used by several of them, each in part"
+)]
+
 #[path = "corpus/mod.rs"]
 pub mod corpus;
 

@@ -1,6 +1,16 @@
 //! Simulated logs from the plant: excitations, drifted parameters, sensor noise.
 
-#![allow(dead_code, reason = "each example uses a part of it")]
+#![allow(
+    missing_docs,
+    unreachable_pub,
+    dead_code,
+    clippy::must_use_candidate,
+    clippy::missing_panics_doc,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::redundant_closure_for_method_calls,
+    reason = "a corpus for experiments, used by several of them, each in part"
+)]
 
 use std::f64::consts::TAU;
 
