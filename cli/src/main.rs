@@ -40,8 +40,6 @@ enum Command {
     Figures(figures::Args),
     /// Runs a log through the model; without one, the paper's two 20 g cases.
     Run(run::Args),
-    /// Runs parameters over ranges and tolerances.
-    Sweep(sweep::Args),
 }
 
 fn main() -> ExitCode {
@@ -55,7 +53,6 @@ fn main() -> ExitCode {
         Some(Command::Convert(args)) => convert::convert(args),
         Some(Command::Figures(args)) => figures::figures(args),
         Some(Command::Run(args)) => run::run(args),
-        Some(Command::Sweep(args)) => sweep::sweep(args),
         None => run::run_default(&cli.run),
     };
     exit::code(result)
