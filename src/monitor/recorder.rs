@@ -1,6 +1,6 @@
 //! The last seconds before an alarm, for the diagnosis on the ground.
 
-use heapless::HistoryBuf;
+use heapless::HistoryBuffer;
 
 use crate::number::Number;
 use crate::signals::{Input, Output};
@@ -21,7 +21,7 @@ pub struct Record<N> {
 /// A ring of the last `ROWS` rows kept, one row in every few; it stops at the first alarm.
 #[derive(Debug)]
 pub struct Recorder<N: Number, const ROWS: usize> {
-    ring: HistoryBuf<Record<N>, ROWS>,
+    ring: HistoryBuffer<Record<N>, ROWS>,
     every: u32,
     row: u32,
     stopped: bool,
@@ -31,7 +31,7 @@ impl<N: Number, const ROWS: usize> Recorder<N, ROWS> {
     /// An empty ring that keeps one row in `every`; 0 counts as 1.
     #[must_use]
     pub fn new(every: u32) -> Self {
-        Self { ring: HistoryBuf::new(), every: every.max(1), row: 0, stopped: false }
+        Self { ring: HistoryBuffer::new(), every: every.max(1), row: 0, stopped: false }
     }
 
     /// Takes a row; `alarm` stops the ring.

@@ -35,7 +35,7 @@ pub(crate) fn check() -> Result<Note> {
                 .env_remove("CARGO")
                 .env_remove("RUSTUP_TOOLCHAIN")
                 .env("CARGO_TARGET_DIR", target_dir().join("oldest-rust/target"))
-                .args(["run", &version, "cargo", "check", "--quiet", features]),
+                .args(["run", &version, "cargo", "check", "--quiet", "--package", "gimbal-servo", features]),
         )
         .with_context(|| format!("Rust {version} does not build the library"))?;
     }
