@@ -21,7 +21,7 @@ struct Message {
     level: String,
 }
 
-/// Units of one word; rustdoc takes nothing with a space or a slash for a link.
+/// Units and measures of one word; rustdoc takes nothing with a space or a slash for a link.
 const UNITS: &[&str] = &[
     "s",
     "ms",
@@ -42,6 +42,10 @@ const UNITS: &[&str] = &[
     "lbf",
     "percent",
     "bytes",
+    "px",
+    "nats",
+    "rms",
+    "1",
     "pixels",
     "rows",
     "instructions",
