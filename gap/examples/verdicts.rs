@@ -3,15 +3,9 @@
 //! One line a log, and a count at the end; SIZE multiplies the typical size of every effect.
 
 #![allow(
-    missing_docs,
-    unreachable_pub,
-    dead_code,
-    clippy::must_use_candidate,
-    clippy::missing_panics_doc,
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    clippy::redundant_closure_for_method_calls,
-    reason = "a corpus for experiments, used by several of them, each in part"
+    reason = "counts given as numbers on the command line"
 )]
 
 #[path = "corpus/mod.rs"]
@@ -80,7 +74,7 @@ fn main() {
                 found,
                 diagnosis.decision.as_ref().and_then(|d| d.found.first()).map_or(0.0, |found| found.probability),
                 diagnosis.decision.as_ref().map_or(0.0, |d| d.unknown_probability),
-                diagnosis.decision.as_ref().map(|d| d.left_over.map(|value| value.round())).unwrap_or_default(),
+                diagnosis.decision.as_ref().map(|d| d.left_over.map(f64::round)).unwrap_or_default(),
                 others.join(", ")
             );
             for fault in &diagnosis.record.faults {
