@@ -7,7 +7,6 @@ mod chart;
 mod envelope;
 mod simplify;
 
-#[allow(unused_imports, reason = "fields are drawn by sweeps")]
 pub(crate) use chart::{Axis, Chart, Field, Look, Series};
 pub(crate) use envelope::Envelope;
 

@@ -22,6 +22,8 @@ const SHAPE_SIGMA: f64 = 1.2;
 pub struct Fit {
     /// Candidates, as the set had them.
     pub set: Set,
+    /// Their names.
+    pub effects: Vec<&'static str>,
     /// Values of each effect.
     pub values: Vec<Vec<f64>>,
     /// Standard errors of the values.
@@ -57,17 +59,19 @@ struct Free {
     center: f64,
 }
 
-/// Fits a set from the linear fit's values.
+/// Fits a set from the values given, and from the nominal parameters and the beginning of another fit.
 #[must_use]
-pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Fit {
+pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fit>) -> Fit {
     let mut values = start.to_vec();
-    let mut shifts = vec![0.0; problem.nuisances.len()];
-    let mut state = vec![0.0; problem.columns.begin];
+    let mut shifts = from.map_or_else(|| vec![0.0; problem.nuisances.len()], |fit| fit.shifts.clone());
+    let mut state = from.map_or_else(|| vec![0.0; problem.columns.begin], |fit| state_of(problem, fit));
     let free = free(problem, set, &values);
     let (fixed, precision) = fixed(problem, set);
     let mut now = evaluate(problem, set, &values, &shifts, &state);
     let priors = |values: &[Vec<f64>], shifts: &[f64], state: &[f64]| {
-        prior(shifts, state, &precision) + shape_prior(&free, values)
+        let pull = Pull::new(problem, &precision, shifts);
+        let begin: f64 = state.iter().zip(&precision).map(|(value, precision)| value * value * precision).sum();
+        begin + pull.cost + shape_prior(&free, values)
     };
     let mut power = square(&now.1);
     let mut last = None;
@@ -81,7 +85,7 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Fit {
         let (mut gram, mut drive, mut weights) = joined(problem, fixed, &columns, &now.1);
         gram /= temper;
         drive /= temper;
-        for (place, value) in state.iter().chain(&shifts).enumerate() {
+        for (place, value) in state.iter().enumerate() {
             drive[place] -= precision[place] * value;
         }
         for (index, free) in free.iter().enumerate() {
@@ -90,9 +94,32 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Fit {
             drive[fixed + index] -= weight * off;
             weights.push(weight);
         }
-        let weights: Vec<f64> = precision.iter().copied().chain(weights).collect();
-        let chosen: Vec<usize> = (0..weights.len()).collect();
-        let Some(solution) = solve(&gram, &drive, &chosen, &weights) else { break };
+        // which walls the step ends behind decides which pull: solved until that stands
+        let mut ahead = shifts.clone();
+        let mut solution = None;
+        for _ in 0..5 {
+            let pull = Pull::ahead(problem, &precision, &shifts, &ahead);
+            let mut drive = drive.clone();
+            for (place, slope) in pull.slope.iter().enumerate() {
+                drive[state.len() + place] -= slope;
+            }
+            let weights: Vec<f64> =
+                precision[..state.len()].iter().chain(&pull.curvature).copied().chain(weights.clone()).collect();
+            let chosen: Vec<usize> = (0..weights.len()).collect();
+            let Some(found) = solve(&gram, &drive, &chosen, &weights) else { break };
+            let next: Vec<f64> = shifts
+                .iter()
+                .enumerate()
+                .map(|(place, shift)| shift + found.coefficients[state.len() + place])
+                .collect();
+            let same = Pull::ahead(problem, &precision, &shifts, &next).curvature == pull.curvature;
+            solution = Some(found);
+            ahead = next;
+            if same {
+                break;
+            }
+        }
+        let Some(solution) = solution else { break };
         let mut share = 1.0;
         let mut better = false;
         for _ in 0..4 {
@@ -125,6 +152,15 @@ impl Fit {
     }
 }
 
+impl Fit {
+    /// Whether the size of a member of the set is zero within three standard errors.
+    #[must_use]
+    pub fn is_idle(&self, place: usize) -> bool {
+        let sizes = gimbal_plant::Effect::from_name(self.effects[place]).map_or(1, Effect::sizes);
+        self.values[place].iter().zip(&self.errors[place]).take(sizes).all(|(value, error)| value.abs() < 3.0 * error)
+    }
+}
+
 /// The prediction of a fit whose parameters are corrected by leaving blocks out: one step of Gauss-Newton.
 #[must_use]
 pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
@@ -135,7 +171,8 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
     let mut columns: Vec<&Vec<f64>> = problem.whitened[begin..fixed].iter().collect();
     columns.extend(&fit.sensitivities);
     let free = free(problem, &fit.set, &fit.values);
-    let mut weights = precision[begin..].to_vec();
+    let pull = Pull::new(problem, &precision, &fit.shifts);
+    let mut weights = pull.curvature;
     weights.extend(free.iter().map(|free| 1.0 / (free.sigma * free.sigma)));
     let n = columns.len();
     let (mut gram, mut drive) = (DMatrix::zeros(n, n), DVector::zeros(n));
@@ -156,15 +193,15 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
     let temper = (LINEARISED * excess).max(1.0);
     gram /= temper;
     drive /= temper;
-    for (place, shift) in fit.shifts.iter().enumerate() {
-        drive[place] -= weights[place] * shift;
+    for (place, slope) in pull.slope.iter().enumerate() {
+        drive[place] -= slope;
     }
     let chosen: Vec<usize> = (0..n).collect();
     let Some(solution) = solve(&gram, &drive, &chosen, &weights) else { return fit.prediction.clone() };
     let limits = vec![f64::MAX; fit.shifts.len()];
     let mut step = DVector::zeros(begin + n);
     step.rows_mut(begin, n).copy_from(&solution.coefficients);
-    let state: Vec<f64> = fit.begin.state.iter().zip(&problem.begin.state).take(begin).map(|(a, b)| a - b).collect();
+    let state = state_of(problem, fit);
     let (values, shifts, state) = moved(&free, &fit.values, &fit.shifts, &state, &step, &limits);
     evaluate(problem, &fit.set, &values, &shifts, &state).0
 }
@@ -185,6 +222,11 @@ pub fn without(problem: &Problem, fit: &Fit, place: usize) -> Vec<f64> {
     let physics = physics(problem, &set, &values, &shifts);
     let prediction = predict(&physics, &problem.record.inputs, &fit.begin, usize::MAX);
     problem.whiten(difference(problem.record, &fit.prediction, &prediction, 1.0))
+}
+
+/// How far the beginning of a fit is from the first guess.
+fn state_of(problem: &Problem, fit: &Fit) -> Vec<f64> {
+    fit.begin.state.iter().zip(&problem.begin.state).take(problem.columns.begin).map(|(a, b)| a - b).collect()
 }
 
 struct Parts {
@@ -217,7 +259,8 @@ fn finish(problem: &Problem, set: &Set, free: &[Free], parts: Parts) -> Fit {
                 }
             }
         }
-        volume = solution.evidence - 0.5 * solution.gain;
+        let (_, precision) = self::fixed(problem, set);
+        volume = solution.evidence - 0.5 * solution.gain - Pull::new(problem, &precision, &shifts).walls;
         sensitivities = columns;
     }
     for &index in &set.0 {
@@ -228,6 +271,7 @@ fn finish(problem: &Problem, set: &Set, free: &[Free], parts: Parts) -> Fit {
     let square = square(&now.1);
     Fit {
         set: set.clone(),
+        effects: set.0.iter().map(|&index| problem.candidates[index].effect).collect(),
         values,
         errors,
         shifts,
@@ -355,8 +399,41 @@ fn limits(problem: &Problem, precision: &[f64]) -> Vec<f64> {
     problem.nuisances.iter().enumerate().map(of).collect()
 }
 
-fn prior(shifts: &[f64], state: &[f64], precision: &[f64]) -> f64 {
-    state.iter().chain(shifts).zip(precision).map(|(value, precision)| value * value * precision).sum()
+/// The priors of the nominal parameters at their shifts; a released one has a plain one.
+pub(crate) struct Pull {
+    /// Half the slope of the cost.
+    pub(crate) slope: Vec<f64>,
+    /// Half its curvature.
+    pub(crate) curvature: Vec<f64>,
+    /// Cost of all.
+    pub(crate) cost: f64,
+    /// What walls add to the logarithm of the precision [nats].
+    pub(crate) walls: f64,
+}
+
+impl Pull {
+    pub(crate) fn new(problem: &Problem, precision: &[f64], shifts: &[f64]) -> Self {
+        Self::ahead(problem, precision, shifts, shifts)
+    }
+
+    /// The same with the walls that stand at other shifts, those that a step ends at.
+    fn ahead(problem: &Problem, precision: &[f64], shifts: &[f64], ahead: &[f64]) -> Self {
+        let mut pull = Self { slope: Vec::new(), curvature: Vec::new(), cost: 0.0, walls: 0.0 };
+        for (place, (nuisance, shift)) in problem.nuisances.iter().zip(shifts).enumerate() {
+            let own = precision[problem.columns.begin + place];
+            let flat = 1.0 / (nuisance.sigma * nuisance.sigma);
+            let released = own < 0.98 * flat;
+            let (slope, curvature, cost) =
+                if released { (own * shift, own, own * shift * shift) } else { nuisance.prior(*shift, ahead[place]) };
+            pull.slope.push(slope);
+            pull.curvature.push(curvature);
+            pull.cost += cost;
+            if !released {
+                pull.walls += 0.5 * (curvature / flat).ln();
+            }
+        }
+        pull
+    }
 }
 
 fn square(values: &[f64]) -> f64 {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 
 use super::normal::solve;
+use super::refine::Pull;
 use super::{Fit, Problem, refine};
 use crate::record::{Record, Signal};
 use crate::simulate::Prediction;
@@ -35,7 +36,7 @@ const PROMISE_OF_SHIFT: f64 = 3.0;
 /// Looks through the library.
 #[must_use]
 pub fn search(problem: &Problem) -> Search {
-    let null = refine(problem, &Set::default(), &[]);
+    let null = polish(problem, refine(problem, &Set::default(), &[], None));
     let ranked = extensions(problem, &null);
     let singles = ranked.iter().map(|entry| entry.1).collect();
     let mut fits = Vec::new();
@@ -67,7 +68,63 @@ pub fn search(problem: &Problem) -> Search {
         }
         sort(problem, &mut fits);
     }
+    // what is close to the best is brought to its end before it is judged
+    let last: Vec<Fit> = fits.drain(..fits.len().min(POLISHED)).collect();
+    let last: Vec<Fit> = last.into_par_iter().map(|fit| polish(problem, fit)).collect();
+    fits.splice(0..0, last);
+    sort(problem, &mut fits);
+    without_idle(problem, &mut fits);
     Search { null, fits, singles }
+}
+
+/// A set with a member that is zero within its error was only the better way down: the set without it starts there.
+fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
+    let idle: Vec<(usize, usize)> = fits
+        .iter()
+        .enumerate()
+        .take(3)
+        .filter(|(_, fit)| fit.set.0.len() > 1)
+        .flat_map(|(index, fit)| {
+            (0..fit.set.0.len()).filter(|&place| fit.is_idle(place)).map(move |place| (index, place))
+        })
+        .collect();
+    let reduced: Vec<Fit> = idle
+        .into_par_iter()
+        .map(|(index, place)| {
+            let fit = &fits[index];
+            let (mut set, mut values) = (fit.set.clone(), fit.values.clone());
+            set.0.remove(place);
+            values.remove(place);
+            polish(problem, refine(problem, &set, &values, Some(fit)))
+        })
+        .collect();
+    for fit in reduced {
+        fits.retain(|other| {
+            !same(problem, &other.set, &fit.set) || other.square + other.prior < fit.square + fit.prior
+        });
+        if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
+            fits.push(fit);
+        }
+    }
+    sort(problem, fits);
+}
+
+/// Hypotheses that are fitted until nothing moves any more.
+const POLISHED: usize = 6;
+
+/// Fits on from where a fit ended, until it stands still.
+fn polish(problem: &Problem, mut fit: Fit) -> Fit {
+    for _ in 0..4 {
+        let next = refine(problem, &fit.set, &fit.values, Some(&fit));
+        let gained = 0.5 * (fit.square + fit.prior) - 0.5 * (next.square + next.prior);
+        if next.volume.is_finite() {
+            fit = next;
+        }
+        if gained < 0.5 {
+            break;
+        }
+    }
+    fit
 }
 
 fn promising(problem: &Problem, index: usize, gain: f64) -> bool {
@@ -101,10 +158,12 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
         problem.whitened.par_iter().map(|column| column.iter().zip(&fit.residual).map(|(a, b)| a * b).sum()).collect();
     let mut drive = nalgebra::DVector::from_vec(drive);
     // priors pull the shifts that the fit has already
-    let (chosen, precision) = problem.chosen(&fit.set.0);
-    for (place, shift) in fit.shifts.iter().enumerate() {
-        let column = problem.columns.begin + place;
-        drive[column] -= precision[column] * shift;
+    let (chosen, mut precision) = problem.chosen(&fit.set.0);
+    let begin = problem.columns.begin;
+    let pull = Pull::new(problem, &precision, &fit.shifts);
+    for (place, slope) in pull.slope.iter().enumerate() {
+        drive[begin + place] -= slope;
+        precision[begin + place] = pull.curvature[place];
     }
     debug_assert_eq!(drive.len(), all);
     let base = solve(&problem.normal.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.evidence);
@@ -115,13 +174,15 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
             }
             let mut set = fit.set.0.clone();
             set.push(index);
-            let (wide, wide_precision) = problem.chosen(&set);
+            let (wide, mut wide_precision) = problem.chosen(&set);
             let mut drive = drive.clone();
             // a released parameter is no longer pulled back
-            for (place, shift) in fit.shifts.iter().enumerate() {
-                let column = problem.columns.begin + place;
-                drive[column] += (precision[column] - wide_precision[column]) * shift;
+            let wide_pull = Pull::new(problem, &wide_precision, &fit.shifts);
+            for place in 0..fit.shifts.len() {
+                drive[begin + place] += pull.slope[place] - wide_pull.slope[place];
             }
+            wide_precision[begin..begin + fit.shifts.len()].copy_from_slice(&wide_pull.curvature);
+            let released = wide_pull.walls - pull.walls - 0.5 * (pull.cost - wide_pull.cost);
             let candidate = &problem.candidates[index];
             let Some(solution) = solve(&problem.normal.gram, &drive, &wide, &wide_precision) else {
                 return (index, f64::NEG_INFINITY, Vec::new());
@@ -137,8 +198,11 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
                 && candidate.effect != "dead_zone"
                 && candidate.effect != "torque_saturation"
                 || amplitudes.first().is_some_and(|amplitude| *amplitude > 0.1 && *amplitude < 8.0);
-            let gain =
-                if sane { solution.evidence - base - (candidate.siblings as f64).ln() } else { f64::NEG_INFINITY };
+            let gain = if sane {
+                solution.evidence - base - released - (candidate.siblings as f64).ln()
+            } else {
+                f64::NEG_INFINITY
+            };
             (index, gain, amplitudes)
         })
         .collect()
@@ -171,7 +235,7 @@ fn extend(problem: &Problem, from: &Fit, index: usize) -> Fit {
     set.0.push(index);
     let mut values = from.values.clone();
     values.push(problem.candidates[index].values(&amplitudes));
-    refine(problem, &set, &values)
+    refine(problem, &set, &values, None)
 }
 
 /// Cycles a revolution at which the torque residual has lines: a matched filter in rel.

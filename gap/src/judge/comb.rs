@@ -1,49 +1,55 @@
 //! `pickoff_quantisation` in the samples themselves: angles on a grid of step q make `mean exp(2 pi i theta / q)`
-//! differ from what the predicted angles and white noise give.
+//! differ from what the predicted angles and white noise give. All steps at once: the transform of two histograms.
 
 use std::f64::consts::TAU;
+
+use realfft::RealFftPlanner;
 
 /// Steps that are tried [rad].
 const FINEST_RAD: f64 = 8e-7;
 const COARSEST_RAD: f64 = 3e-5;
-/// Reach of the samples that are looked at, about their middle [rad].
-const REACH_RAD: f64 = 2e-4;
-/// Standard deviations that the line must stand out by, over all steps tried.
-const STANDS_OUT: f64 = 7.5;
+/// Width of a bin of the histograms [rad], and their number.
+const BIN_RAD: f64 = 1e-7;
+const BINS: usize = 1 << 16;
+/// Standard deviations that the line must stand out by.
+const STANDS_OUT: f64 = 6.5;
 
 /// The step of the pick-off, if its samples lie on a grid.
 #[must_use]
 pub(crate) fn step_rad(theta: &[f64], predicted: &[f64], valid: &[bool], sigma: f64) -> Option<f64> {
-    let rows = || (0..theta.len()).filter(|&k| valid[k]);
-    let mut sorted: Vec<f64> = rows().step_by(16).map(|k| theta[k]).collect();
-    sorted.sort_by(f64::total_cmp);
-    // away from rest: where most of the samples stand still there is no grid to be seen
-    let middle = *sorted.get(3 * sorted.len() / 4)?;
-    let near: Vec<usize> = rows().filter(|&k| (theta[k] - middle).abs() < REACH_RAD).collect();
-    let stride = (near.len() / 5000).max(1);
-    let pool: Vec<(f64, f64)> = near.into_iter().step_by(stride).map(|k| (theta[k], predicted[k])).collect();
-    if pool.len() < 500 {
+    let mut measured = vec![0.0; BINS];
+    let mut expected = vec![0.0; BINS];
+    let mut count = 0.0;
+    for k in (0..theta.len()).filter(|&k| valid[k]) {
+        if let (Some(a), Some(b)) = (bin(theta[k]), bin(predicted[k])) {
+            measured[a] += 1.0;
+            expected[b] += 1.0;
+            count += 1.0;
+        }
+    }
+    if count < 2000.0 {
         return None;
     }
-    let strength = |inverse: f64| {
-        let blur = (-0.5 * (TAU * sigma * inverse).powi(2)).exp();
-        let (mut sine, mut cosine) = (0.0, 0.0);
-        for (theta, predicted) in &pool {
-            let (s, c) = (TAU * theta * inverse).sin_cos();
-            let (ps, pc) = (TAU * predicted * inverse).sin_cos();
-            sine += s - blur * ps;
-            cosine += c - blur * pc;
-        }
-        sine.hypot(cosine) / (pool.len() as f64 / 2.0).sqrt()
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(BINS);
+    let (mut a, mut b) = (transform.make_output_vec(), transform.make_output_vec());
+    transform.process(&mut measured, &mut a).ok()?;
+    transform.process(&mut expected, &mut b).ok()?;
+    let step = 1.0 / (BINS as f64 * BIN_RAD);
+    let strength = |line: usize| {
+        let blur = (-0.5 * (TAU * sigma * line as f64 * step).powi(2)).exp();
+        (a[line] - b[line] * blur).norm() / (count / 2.0_f64).sqrt()
     };
-    let (mut best, mut best_inverse) = (0.0, 0.0);
-    let mut inverse = 1.0 / COARSEST_RAD;
-    while inverse < 1.0 / FINEST_RAD {
-        let value = strength(inverse);
-        if value > best {
-            (best, best_inverse) = (value, inverse);
-        }
-        inverse += 0.2 / REACH_RAD;
-    }
-    (best > STANDS_OUT).then(|| 1.0 / best_inverse)
+    let lines = (0..a.len()).filter(|&line| {
+        let inverse = line as f64 * step;
+        inverse > 1.0 / COARSEST_RAD && inverse < 1.0 / FINEST_RAD
+    });
+    let best = lines.max_by(|x, y| strength(*x).total_cmp(&strength(*y)))?;
+    (strength(best) > STANDS_OUT).then(|| 1.0 / (best as f64 * step))
+}
+
+/// The bin of an angle, about the middle.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the bins")]
+fn bin(angle_rad: f64) -> Option<usize> {
+    let place = (angle_rad / BIN_RAD + BINS as f64 / 2.0).floor();
+    (place >= 0.0 && place < BINS as f64).then_some(place as usize)
 }

@@ -107,6 +107,9 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         let mut score = fit.evidence(temper) - search.null.evidence(temper);
         for (place, &index) in fit.set.0.iter().enumerate() {
             let candidate = &problem.candidates[index];
+            if fit.is_idle(place) {
+                score -= 1e3;
+            }
             if candidate.releases.is_empty() {
                 score -= COST;
             } else {

@@ -4,8 +4,10 @@ use gimbal_model_file::Tolerance;
 
 use crate::simulate::Physics;
 
-/// Standard deviation over tolerance: a value anywhere within plus and minus its tolerance, and hardly beyond.
-const UNIFORM: f64 = 0.45;
+/// Standard deviation over tolerance within the tolerance, where nearly every value is as good as any other.
+const UNIFORM: f64 = 0.7;
+/// The same for what lies beyond it.
+const BEYOND: f64 = 0.25;
 
 /// One nominal parameter.
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +22,25 @@ pub struct Nuisance {
 }
 
 impl Nuisance {
+    /// Half the slope and half the curvature of the prior's cost at a shift, and the cost; of the parabola that
+    /// holds at the shift `ahead`.
+    ///
+    /// ```text
+    /// cost = (s / (0.7 tol))^2 + (max(0, |s| - tol) / (0.25 tol))^2
+    /// ```
+    #[must_use]
+    pub fn prior(&self, shift: f64, ahead: f64) -> (f64, f64, f64) {
+        let tolerance = self.sigma / UNIFORM;
+        let wall = BEYOND * tolerance;
+        let flat = 1.0 / (self.sigma * self.sigma);
+        if ahead.abs() <= tolerance {
+            return (flat * shift, flat, flat * shift * shift);
+        }
+        let steep = 1.0 / (wall * wall);
+        let beyond = shift - tolerance.copysign(ahead);
+        (flat * shift + steep * beyond, flat + steep, flat * shift * shift + steep * beyond * beyond)
+    }
+
     /// Moves the parameter.
     pub fn shift(&self, physics: &mut Physics, by: f64) {
         (self.shift)(physics, by);

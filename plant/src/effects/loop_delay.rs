@@ -56,7 +56,9 @@ impl History {
     pub(crate) fn keep(&mut self, from_s: f64, dense: &Dense) {
         let (step_s, start, coefficients) = dense.of([THETA, TORQUE]);
         self.pieces.push_back(Piece { from_s, step_s, start, coefficients });
-        while self.pieces.front().is_some_and(|piece| piece.from_s + piece.step_s < from_s + step_s - self.span_s) {
+        // a margin above the rounding of times: the end of the delay itself is still asked for
+        let oldest_s = from_s + step_s - self.span_s - 1e-9;
+        while self.pieces.front().is_some_and(|piece| piece.from_s + piece.step_s < oldest_s) {
             self.pieces.pop_front();
         }
     }

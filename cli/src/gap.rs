@@ -1,0 +1,65 @@
+//! `gimbal gap`: where the gap between a model and a log lies, which effect causes it, how far it shrinks.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Parser;
+use gimbal_gap::report as told;
+use gimbal_log::{AtomicFile, Log, Needs};
+use gimbal_model_file::ModelFile;
+use serde_json::Value;
+
+use crate::exit::Failure;
+use crate::report;
+
+/// Diagnoses the gap between a model and logs.
+#[derive(Debug, Parser)]
+pub(crate) struct Args {
+    /// Logs, each diagnosed by itself
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+    /// Model file
+    #[arg(long, value_name = "FILE.toml")]
+    model: Option<PathBuf>,
+    /// Folder for gap.json and gap.html; with several logs, a folder in it for each
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the report as JSON; with several logs, a list
+    #[arg(long)]
+    json: bool,
+}
+
+/// Diagnoses what the command line says.
+pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
+    let model = match &args.model {
+        None => ModelFile::default(),
+        Some(path) => ModelFile::open(path).map_err(|error| Failure::Input(error.into()))?,
+    };
+    let model_name = args.model.as_deref().map_or_else(|| "consistent".to_owned(), |path| path.display().to_string());
+    let mut texts = Vec::new();
+    let mut reports: Vec<Value> = Vec::new();
+    for path in &args.logs {
+        let log = Log::open(path, Needs::Diagnosis)?;
+        let diagnosis = gimbal_gap::diagnose(&log, &model);
+        let name = path.display().to_string();
+        let json = told::json(&diagnosis, &name, &model_name);
+        if let Some(out) = &args.out {
+            let folder =
+                if args.logs.len() == 1 { out.clone() } else { out.join(path.file_stem().unwrap_or_default()) };
+            std::fs::create_dir_all(&folder).map_err(Failure::write(&folder))?;
+            write(&folder.join("gap.json"), &format!("{json:#}\n"))?;
+            write(&folder.join("gap.html"), &told::html(&diagnosis, &name))?;
+        }
+        let text = told::text(&diagnosis);
+        texts.push(if args.logs.len() == 1 { text } else { format!("{name}\n{text}") });
+        reports.push(json);
+    }
+    let json = if reports.len() == 1 { reports.remove(0) } else { Value::Array(reports) };
+    report::print(&texts.join("\n\n"), args.json.then_some(&json))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    let mut file = AtomicFile::create(path).map_err(Failure::write(path))?;
+    file.write_all(text.as_bytes()).map_err(Failure::write(path))?;
+    file.commit().map_err(Failure::write(path))
+}
