@@ -23,7 +23,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     let out = PathBuf::from(env::var("OUT_DIR")?).join("build.rs");
-    fs::write(out, format!("/// Digest of the flight code's source.\npub const BUILD: u64 = {digest};\n"))?;
+    let bytes = digest.to_be_bytes();
+    let text =
+        format!("/// Digest of the flight code's source.\npub const BUILD: u64 = u64::from_be_bytes({bytes:?});\n");
+    fs::write(out, text)?;
     Ok(())
 }
 

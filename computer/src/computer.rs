@@ -172,9 +172,15 @@ impl<N: Number> Computer<N> {
             Message::ReadFaults => return self.report(),
             Message::LoadPart(part) => self.load_part(&part),
             Message::LoadEnd(end) => self.load_end(end),
-            Message::Reset(reset) => self.reset(reset.whole),
+            Message::Reset(reset) => {
+                self.reset(reset.whole);
+                Ok(())
+            }
             Message::Run(run) => self.run(run.watchdog_ticks),
-            Message::Stop => self.stop(),
+            Message::Stop => {
+                self.stop();
+                Ok(())
+            }
             Message::DumpRing => self.dump_ring(),
             // What goes up has no meaning on the way down.
             Message::Identity(_)
@@ -265,7 +271,7 @@ impl<N: Number> Computer<N> {
         }
     }
 
-    fn reset(&mut self, whole: bool) -> Result<(), (Outcome, u16)> {
+    fn reset(&mut self, whole: bool) {
         self.counts = Counts::default();
         self.waiting = None;
         self.used = None;
@@ -282,7 +288,6 @@ impl<N: Number> Computer<N> {
             axis.restart();
             self.mode = Mode::Ready;
         }
-        Ok(())
     }
 
     fn run(&mut self, watchdog_ticks: u16) -> Result<(), (Outcome, u16)> {
@@ -298,11 +303,10 @@ impl<N: Number> Computer<N> {
         Ok(())
     }
 
-    fn stop(&mut self) -> Result<(), (Outcome, u16)> {
+    fn stop(&mut self) {
         if matches!(self.mode, Mode::Running | Mode::Safe) {
             self.mode = Mode::Ready;
         }
-        Ok(())
     }
 
     fn dump_ring(&mut self) -> Result<(), (Outcome, u16)> {
@@ -339,7 +343,7 @@ impl<N: Number> Computer<N> {
             (Mode::Running | Mode::Safe, true) => self.step(tick),
             _ => self.idle(),
         };
-        if tick % limits::TELEMETRY_TICKS == 0 {
+        if tick.is_multiple_of(limits::TELEMETRY_TICKS) {
             let telemetry = self.telemetry();
             self.answer(telemetry);
         }

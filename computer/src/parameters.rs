@@ -7,6 +7,8 @@ use gimbal_servo::{Config, Digest, Interpolation, Range, bearing, estimator, gyr
 
 /// Number of parameters.
 pub const COUNT: usize = 60;
+/// Of which the first belong to the axis.
+const AXIS_COUNT: usize = 39;
 
 /// Parameters of the axis, then of the estimator.
 pub type Values = [f64; COUNT];
@@ -88,6 +90,15 @@ pub fn digest(values: &Values) -> u64 {
 /// The parameters of a model.
 #[must_use]
 pub fn values(axis: &Config, estimator: &estimator::Config) -> Values {
+    let mut values = [0.0; COUNT];
+    let all = axis_values(axis).into_iter().chain(estimator_values(estimator));
+    for (place, value) in values.iter_mut().zip(all) {
+        *place = value;
+    }
+    values
+}
+
+fn axis_values(axis: &Config) -> [f64; AXIS_COUNT] {
     let Config { servo, gyro, bearing, unbalance, range, period_s, interpolation } = *axis;
     let servo::Config {
         gimbal_inertia_kg_m2,
@@ -121,22 +132,6 @@ pub fn values(axis: &Config, estimator: &estimator::Config) -> Values {
     } = bearing;
     let unbalance::Config { x_kg_m, y_kg_m } = unbalance;
     let Range { radial_accel_mps2, axial_accel_mps2, rate_radps, torque_nm } = range;
-    let estimator::Config { sensors, tolerance, disturbance_walk_nm, horizon_s, bridge_s, widest_bound_rad } =
-        *estimator;
-    let estimator::Sensors {
-        gyro_noise_rad,
-        gyro_step_rad,
-        gyro_range_rad,
-        motor_torque_noise_nm,
-        motor_torque_measured,
-        delay_s,
-        stuck_rows,
-        accel_jump_mps2,
-        rate_jump_radps,
-        torque_jump_nm,
-    } = sensors;
-    let estimator::Tolerance { damping, float_inertia, angular_momentum, gimbal_inertia, stop_angle, friction_level } =
-        tolerance;
     [
         gimbal_inertia_kg_m2,
         gain_nm_per_rad_s,
@@ -177,6 +172,27 @@ pub fn values(axis: &Config, estimator: &estimator::Config) -> Values {
         torque_nm,
         period_s,
         flag(interpolation == Interpolation::Held),
+    ]
+}
+
+fn estimator_values(estimator: &estimator::Config) -> [f64; COUNT - AXIS_COUNT] {
+    let estimator::Config { sensors, tolerance, disturbance_walk_nm, horizon_s, bridge_s, widest_bound_rad } =
+        *estimator;
+    let estimator::Sensors {
+        gyro_noise_rad,
+        gyro_step_rad,
+        gyro_range_rad,
+        motor_torque_noise_nm,
+        motor_torque_measured,
+        delay_s,
+        stuck_rows,
+        accel_jump_mps2,
+        rate_jump_radps,
+        torque_jump_nm,
+    } = sensors;
+    let estimator::Tolerance { damping, float_inertia, angular_momentum, gimbal_inertia, stop_angle, friction_level } =
+        tolerance;
+    [
         gyro_noise_rad,
         gyro_step_rad,
         gyro_range_rad,
