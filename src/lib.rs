@@ -46,6 +46,8 @@ mod law;
 pub mod monitor;
 mod number;
 pub mod paper;
+#[doc(hidden)]
+pub mod parts;
 mod row;
 mod saved;
 pub mod servo;

@@ -35,6 +35,13 @@ pub(crate) struct Tables<N: Number> {
     viscous_high: PowerTable<N>,
 }
 
+impl<N: Number> Tables<N> {
+    /// Square roots.
+    pub(crate) fn sqrt(&self) -> &SqrtTable<N> {
+        &self.sqrt
+    }
+}
+
 /// The friction level and whether an input lay beyond the tables.
 pub(crate) struct Level<N> {
     pub(crate) torque: N,

@@ -59,6 +59,8 @@ pub(crate) fn text(board: &Board, costs: &BTreeMap<&'static str, Cost>) -> Resul
     };
     row("state of an axis [bytes]", &|cost| cost.state_bytes.to_string())?;
     row("law of an axis [bytes]", &|cost| cost.law_bytes.to_string())?;
+    row("state of the estimator [bytes]", &|cost| cost.estimator_bytes[0].to_string())?;
+    row("law of the estimator [bytes]", &|cost| cost.estimator_bytes[1].to_string())?;
     row("code of the step [bytes]", &|cost| cost.code_bytes.to_string())?;
     row("constants of both [bytes]", &|cost| cost.constant_bytes.to_string())?;
     row("static RAM of both [bytes]", &|cost| cost.static_ram_bytes.to_string())?;
@@ -70,6 +72,11 @@ pub(crate) fn text(board: &Board, costs: &BTreeMap<&'static str, Cost>) -> Resul
         row(&format!("{profile}: least instructions"), &|cost| count(cost).map_or("-".into(), |c| c.min.to_string()))?;
         row(&format!("{profile}: mean"), &|cost| count(cost).map_or("-".into(), |c| format!("{:.1}", c.mean)))?;
         row(&format!("{profile}: most"), &|cost| count(cost).map_or("-".into(), |c| c.max.to_string()))?;
+    }
+    let inexact: BTreeSet<&String> = costs.values().flat_map(|cost| cost.errors_ppm.keys()).collect();
+    for name in inexact {
+        let error = |cost: &Cost| cost.errors_ppm.get(name).map_or("-".into(), ToString::to_string);
+        row(&format!("{name}: largest error [1e-6]"), &error)?;
     }
     for (number, cost) in costs {
         writeln!(text, "\n{number}, deepest calls [bytes of stack]:\n  {}", cost.deepest.replace(" > ", "\n  "))?;

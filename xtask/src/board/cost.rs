@@ -23,6 +23,10 @@ pub(crate) struct Cost {
     pub(crate) instructions: BTreeMap<String, Count>,
     pub(crate) state_bytes: u64,
     pub(crate) law_bytes: u64,
+    /// State and law of the estimator.
+    pub(crate) estimator_bytes: [u64; 2],
+    /// Largest relative error of another crate's function [1e-6], by name.
+    pub(crate) errors_ppm: BTreeMap<String, u64>,
     /// Code that the step reaches, with the constants among it.
     pub(crate) code_bytes: u32,
     /// Constants in sections of their own, of both number systems together.
@@ -63,13 +67,22 @@ pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
     Ok(costs)
 }
 
-/// `cost PROFILE NUMBER STEPS MIN MEAN_MILLI MAX`, `cost-events` the same, `size NUMBER STATE LAW`.
+/// `cost PROFILE NUMBER STEPS MIN MEAN_MILLI MAX`, `cost-events` the same, `size NUMBER STATE LAW`, `size-estimator` the
+/// same, `error NAME NUMBER PPM`.
 fn read_line(line: &str, costs: &mut BTreeMap<&'static str, Cost>) -> Result<()> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
         ["size", number, state, law] => {
             let cost = costs.get_mut(*number).context("an unknown number system")?;
             (cost.state_bytes, cost.law_bytes) = (state.parse()?, law.parse()?);
+        }
+        ["size-estimator", number, state, law] => {
+            let cost = costs.get_mut(*number).context("an unknown number system")?;
+            cost.estimator_bytes = [state.parse()?, law.parse()?];
+        }
+        ["error", name, number, ppm] => {
+            let cost = costs.get_mut(*number).context("an unknown number system")?;
+            cost.errors_ppm.insert((*name).to_owned(), ppm.parse()?);
         }
         [kind @ ("cost" | "cost-events"), profile, number, steps, min, mean_milli, max] => {
             let name = if *kind == "cost" { (*profile).to_owned() } else { format!("{profile}, stop events") };
@@ -111,7 +124,8 @@ fn to_json(board: &Board, costs: &BTreeMap<&str, Cost>) -> Result<serde_json::Va
         .map(|(number, cost)| {
             let sizes = json!({
                 "flash_bytes": cost.code_bytes + cost.constant_bytes, "state_bytes": cost.state_bytes,
-                "law_bytes": cost.law_bytes, "stack_bytes": cost.stack_bytes,
+                "law_bytes": cost.law_bytes, "estimator_state_bytes": cost.estimator_bytes[0],
+                "estimator_law_bytes": cost.estimator_bytes[1], "stack_bytes": cost.stack_bytes,
                 "static_ram_bytes": cost.static_ram_bytes,
             });
             ((*number).to_owned(), sizes)
