@@ -125,6 +125,11 @@ fn link(out: &Path, target: &str, board: &Board) -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-link-arg-bins=-T{}", path.display());
         println!("cargo:rustc-link-arg-bins=-Tlink.x");
     }
+    if env::var_os("CARGO_FEATURE_DEFMT").is_some() {
+        println!("cargo:rustc-link-arg-bin=flight=-Tdefmt.x");
+        // Unless told otherwise defmt leaves out all but errors.
+        println!("cargo:rustc-env=DEFMT_LOG=info");
+    }
     // Sections need not start on a page of the host.
     println!("cargo:rustc-link-arg-bins=--nmagic");
     Ok(())

@@ -6,6 +6,7 @@ use core::fmt;
 ///
 /// Only `build` can fail; `step` cannot.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum BuildError {
     /// A field that must be positive and finite is not.

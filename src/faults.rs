@@ -75,6 +75,21 @@ impl BitOrAssign for Faults {
     }
 }
 
+/// The names of the bits that are set.
+#[cfg(feature = "defmt")]
+impl defmt::Format for Faults {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let mut between = "{";
+        for (bit, name) in Self::NAMES {
+            if self.contains(bit) {
+                defmt::write!(f, "{=str}{=str}", between, name);
+                between = ", ";
+            }
+        }
+        defmt::write!(f, "{=str}", if self.is_empty() { "{}" } else { "}" });
+    }
+}
+
 impl fmt::Debug for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut set = f.debug_set();

@@ -23,7 +23,8 @@
 //! what is wrong with its input is a bit of [`Faults`] in its [`Output`]. The same inputs give the same bits on every
 //! machine, in `f32` as in [`Fixed`].
 //!
-//! Features: `serde` derives `Serialize` and `Deserialize` on the configuration. No feature changes a number.
+//! Features: `serde` derives `Serialize` and `Deserialize` on the configuration; `defmt` gives inputs, outputs, faults and
+//! errors a `defmt::Format`. Neither needs the other, and no feature changes a number.
 
 #![no_std]
 #![forbid(unsafe_code)]

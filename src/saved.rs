@@ -31,6 +31,7 @@ pub type Saved = [u8; SAVED_LEN];
 
 /// Why bytes are not a state of this law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RestoreError {
     /// The bytes do not begin as a saved state does.

@@ -7,6 +7,7 @@ use crate::faults::Faults;
 /// With `N = f32` the values are SI; with [`Fixed`](crate::Fixed) they are fractions of the full scales in
 /// [`Units`](crate::Units).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Input<N> {
     /// Specific force along x [m/s2].
     pub accel_x_mps2: N,
@@ -24,6 +25,7 @@ pub struct Input<N> {
 
 /// Where the gyro's float is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Stop {
     /// Between its stops.
     #[default]
@@ -36,6 +38,7 @@ pub enum Stop {
 
 /// State of the axis at the instant of the row just given.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Output<N> {
     /// phi, the stable member's attitude error [rad].
     pub gimbal_angle_rad: N,

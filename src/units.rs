@@ -9,6 +9,7 @@ use crate::row::Row;
 
 /// Exponents of the full scales; all 0 for `f32`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Units {
     /// Specific force, of 1 m/s2.
     pub accel: i32,

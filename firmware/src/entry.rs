@@ -10,7 +10,7 @@ macro_rules! program {
             match $run() {
                 Ok(()) => $crate::semihosting::process::exit(0),
                 Err(error) => {
-                    $crate::semihosting::println!("error: {error}");
+                    $crate::fatal!("error: {}", error);
                     $crate::semihosting::process::exit(1)
                 }
             }
@@ -18,8 +18,17 @@ macro_rules! program {
 
         #[panic_handler]
         fn panic(info: &core::panic::PanicInfo) -> ! {
-            $crate::semihosting::println!("{info}");
+            $crate::entry::tell(info);
             $crate::semihosting::process::exit(1)
         }
     };
+}
+
+/// Prints why the program panicked.
+#[doc(hidden)]
+pub fn tell(info: &core::panic::PanicInfo) {
+    #[cfg(feature = "defmt")]
+    crate::fatal!("{}", crate::log::defmt::Display2Format(info));
+    #[cfg(not(feature = "defmt"))]
+    crate::fatal!("{}", info);
 }

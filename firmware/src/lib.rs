@@ -14,7 +14,10 @@ pub mod cases;
 #[cfg(target_os = "none")]
 pub mod counter;
 #[cfg(target_os = "none")]
-mod entry;
+#[doc(hidden)]
+pub mod entry;
+#[cfg(target_os = "none")]
+pub mod log;
 
 /// Standard output and exit status by semihosting.
 #[cfg(target_os = "none")]

@@ -14,6 +14,7 @@ use crate::table::SqrtTable;
 
 /// A signal as a 32-bit fraction, -1..1, of its full scale. Sums saturate.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct Fixed(i32);
 

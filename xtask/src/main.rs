@@ -20,6 +20,7 @@ usage: cargo xtask <task>
   list                 names of the stages
   cost [--target BOARD] [--json]
                        instructions, flash, state and stack of the step on an emulated board
+  flight [BOARD]       a minute of flight on an emulated board, its log decoded
   profile [BOARD]      where the instructions of the step go, function by function of the source
   budget               writes the figures of every board to firmware/budget/, which `test` compares with
   deny                 cargo-deny on the whole tree; installs it if absent (minutes)
@@ -36,6 +37,8 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         ["cost", rest @ ..] => cost(rest),
+        ["flight"] => task(&|| board::log::print(board::DEFAULT_BOARD)),
+        ["flight", board] => task(&|| board::log::print(board)),
         ["profile"] => task(&|| board::profile::print(board::DEFAULT_BOARD)),
         ["profile", board] => task(&|| board::profile::print(board)),
         ["budget"] => task(&board::budget::write),

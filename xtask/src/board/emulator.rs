@@ -33,6 +33,12 @@ pub(crate) fn run(board: &Board, image: &Path) -> Result<String> {
 
 /// Runs `image` with an instruction every `2^shift` ns: what it printed, and whether it ended well.
 pub(crate) fn run_to_end(board: &Board, image: &Path, shift: u8) -> Result<(String, bool)> {
+    let (output, errors, success) = run_to_end_raw(board, image, shift)?;
+    Ok((String::from_utf8_lossy(&output).into_owned() + &errors, success))
+}
+
+/// The same, what it printed as it came, and what the emulator had to say.
+pub(crate) fn run_to_end_raw(board: &Board, image: &Path, shift: u8) -> Result<(Vec<u8>, String, bool)> {
     ready(&board.emulator.program)?;
     let mut command = program(&board.emulator.program);
     command
@@ -47,8 +53,8 @@ pub(crate) fn run_to_end(board: &Board, image: &Path, shift: u8) -> Result<(Stri
     run_within(&mut command, PATIENCE)
 }
 
-/// Output, standard error included, and whether it went well; it is killed when it takes too long.
-fn run_within(command: &mut Command, patience: Duration) -> Result<(String, bool)> {
+/// Output, standard error, and whether it went well; it is killed when it takes too long.
+fn run_within(command: &mut Command, patience: Duration) -> Result<(Vec<u8>, String, bool)> {
     let name = command.get_program().to_string_lossy().into_owned();
     let mut child = command
         .stdin(Stdio::null())
@@ -60,8 +66,8 @@ fn run_within(command: &mut Command, patience: Duration) -> Result<(String, bool
     let mut stderr = child.stderr.take().context("no output")?;
     // Both pipes are drained while it runs, or it would stop when one is full.
     let output = thread::spawn(move || {
-        let mut text = String::new();
-        stdout.read_to_string(&mut text).map(|_| text)
+        let mut bytes = Vec::new();
+        stdout.read_to_end(&mut bytes).map(|_| bytes)
     });
     let errors = thread::spawn(move || {
         let mut text = String::new();
@@ -79,8 +85,11 @@ fn run_within(command: &mut Command, patience: Duration) -> Result<(String, bool
         }
         thread::sleep(Duration::from_millis(5));
     };
-    let mut text = output.join().expect("reading does not panic")?;
-    text += &errors.join().expect("reading does not panic")?;
-    let Some(status) = status else { bail!("{name} did not end within {} s; so far:\n{text}", patience.as_secs()) };
-    Ok((text, status.success()))
+    let output = output.join().expect("reading does not panic")?;
+    let errors = errors.join().expect("reading does not panic")?;
+    let Some(status) = status else {
+        let text = String::from_utf8_lossy(&output);
+        bail!("{name} did not end within {} s; so far:\n{text}{errors}", patience.as_secs())
+    };
+    Ok((output, errors, status.success()))
 }

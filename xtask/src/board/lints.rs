@@ -17,6 +17,11 @@ pub(crate) fn check() -> Result<Note> {
         run(toolchain
             .cargo("clippy --quiet --release --package gimbal-firmware", target)
             .args(["--", "-D", "warnings"]))?;
+        if target.starts_with("thumbv7em") {
+            run(toolchain
+                .cargo("clippy --quiet --release --package gimbal-firmware --features defmt", target)
+                .args(["--", "-D", "warnings"]))?;
+        }
     }
     Ok(Note::new())
 }

@@ -11,6 +11,7 @@ pub(crate) mod flight;
 pub(crate) mod gates;
 mod image;
 pub(crate) mod lints;
+pub(crate) mod log;
 mod packages;
 pub(crate) mod profile;
 pub(crate) mod setup;

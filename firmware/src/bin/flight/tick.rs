@@ -35,6 +35,8 @@ const RELOAD: u32 = COUNTER_HZ / TICK_HZ - 1;
 /// What the ticks have counted so far; written by the tick alone.
 #[derive(Debug)]
 pub(crate) struct Counts {
+    /// Ticks so far.
+    pub(crate) ticks: AtomicU32,
     /// Ticks that ran into the next one.
     pub(crate) missed: AtomicU32,
     /// Ticks that found no new row.
@@ -48,6 +50,7 @@ pub(crate) struct Counts {
 }
 
 pub(crate) static COUNTS: Counts = Counts {
+    ticks: AtomicU32::new(0),
     missed: AtomicU32::new(0),
     without_row: AtomicU32::new(0),
     lost: AtomicU32::new(0),
@@ -122,6 +125,7 @@ impl Tick {
         }
         sensor::trigger();
         self.number += 1;
+        COUNTS.ticks.store(self.number, Relaxed);
         self.overload();
 
         // The timer has passed zero again: the next tick already waits.

@@ -8,8 +8,8 @@
 #![allow(unsafe_code)]
 
 use cortex_m_rt::exception;
-use gimbal_firmware::board;
-use gimbal_firmware::semihosting::{println, process};
+use gimbal_firmware::semihosting::process;
+use gimbal_firmware::{board, fatal};
 
 /// A running watchdog, or none.
 #[derive(Debug)]
@@ -48,6 +48,6 @@ impl Watchdog {
 /// The watchdog was not fed: a flight computer would go to its safe state here.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
-    println!("watchdog: not fed for {} ms", PATIENCE / (board::COUNTER_HZ / 1_000));
+    fatal!("watchdog: not fed for {} ms", PATIENCE / (board::COUNTER_HZ / 1_000));
     process::exit(1)
 }
