@@ -24,17 +24,25 @@
 //! ```
 
 mod bound;
+mod closely;
 mod config;
+mod contact;
 mod filter;
 mod flags;
 mod health;
 mod held;
 mod law;
 mod matrix;
+mod on_stop;
 mod release;
+mod servo;
+mod signals;
 mod state;
+mod step;
+mod sums;
 
 pub use config::{Config, Sensors, Tolerance};
 pub use flags::Flags;
-pub use law::{Estimate, Law, Measured};
+pub use law::Law;
+pub use signals::{Estimate, Measured};
 pub use state::State;

@@ -30,6 +30,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bearing;
+mod bits;
 mod build;
 mod config;
 mod crossing;

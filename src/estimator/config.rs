@@ -6,6 +6,9 @@ use crate::BuildError;
 use crate::config::within;
 use crate::number::Number;
 
+/// How much more the disturbance wanders once it has jumped.
+const QUICK: f64 = 5.0;
+
 /// Sensors, tolerances and limits of one axis' estimator, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Config {
@@ -120,7 +123,7 @@ impl Default for Config {
         Self {
             sensors: Sensors::default(),
             tolerance: Tolerance::default(),
-            disturbance_walk_nm: 3e-4,
+            disturbance_walk_nm: 1.5e-4,
             horizon_s: 0.02,
             bridge_s: 0.05,
             widest_bound_rad: 5e-3,
@@ -164,8 +167,8 @@ impl Config {
         self.check()?;
         let model = axis.build::<N>()?;
         let filter = Filter::new(self, axis, self.disturbance_walk_nm);
-        // What it takes after a release or an outage: a disturbance that may have become any other.
-        let quick = Filter::new(self, axis, 10.0 * self.disturbance_walk_nm);
+        // After a jump of the disturbance, a release or an outage.
+        let quick = Filter::new(self, axis, QUICK * self.disturbance_walk_nm);
         Ok(Law::build(self, axis, model.units(), &filter, &quick))
     }
 }

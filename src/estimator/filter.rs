@@ -22,8 +22,6 @@ pub(crate) struct Filter {
     generator: Square<5>,
     /// Change of the state over a period, for the state itself; theta and d make none.
     pub(crate) change: Square<STATES>,
-    /// The same for `T_m`.
-    pub(crate) drive: [f64; STATES],
     /// Correction for an innovation of 1.
     pub(crate) gain: [f64; STATES],
     /// Standard deviation of the innovation [rad].
@@ -74,7 +72,6 @@ impl Filter {
         Self {
             generator,
             change,
-            drive,
             gain,
             innovation_rad: libm::sqrt(innovation),
             variance,
@@ -84,13 +81,14 @@ impl Filter {
         }
     }
 
-    /// Rows of theta, w, p, d, `T_m` that give the state `periods` later, `T_m` kept on.
-    pub(crate) fn ahead(&self, periods: f64) -> Square<5> {
-        exponential(&self.generator.map(|row| row.map(|x| x * periods)))
+    /// theta and w `periods` later for theta, w, p, `d - u` now, d and u kept on.
+    pub(crate) fn ahead(&self, periods: f64) -> [[f64; STATES]; 2] {
+        let whole = exponential(&self.generator.map(|row| row.map(|x| x * periods)));
+        core::array::from_fn(|i| core::array::from_fn(|j| whole[i][j]))
     }
 
     /// The part of phi that the gyro sees, `(Bo theta + Jo theta') / H`, `periods` later.
-    pub(crate) fn seen_row(&self, periods: f64) -> [f64; 5] {
+    pub(crate) fn seen_row(&self, periods: f64) -> [f64; STATES] {
         let ahead = self.ahead(periods);
         core::array::from_fn(|i| self.ratio * (ahead[0][i] + self.lead * ahead[1][i]))
     }

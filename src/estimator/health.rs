@@ -6,10 +6,12 @@
 
 use super::config::Config;
 use super::flags::Flags;
-use super::law::Measured;
+use super::signals::Measured;
 use super::state::State as Memory;
+use super::sums::BLOCK;
 use crate::faults::Faults;
 use crate::number::Number;
+use crate::signals::Input;
 use crate::units::Units;
 
 /// `a_x`, `a_y`, `a_z`, rate.
@@ -40,7 +42,6 @@ pub(crate) struct State {
     torque_missing: u32,
     torque_equal: u32,
     torque_held: bool,
-    inputs_equal: [u32; INPUTS],
     inputs_held: [bool; INPUTS],
 }
 
@@ -57,12 +58,20 @@ pub(crate) struct Admitted<N> {
     pub(crate) torque: Option<N>,
     /// What a jump that has been confirmed would have added to the last period's mean and this one's.
     pub(crate) catch_up: N,
+    /// Whether the motor torque held back at the last row was a spike.
+    pub(crate) torque_spiked: bool,
     /// Rows in a row without theta, this one included.
     pub(crate) gyro_missing: u32,
     /// Whether theta is back after an outage that was too long for the filter to bridge well.
     pub(crate) gyro_back: bool,
     pub(crate) torque_lost: bool,
     pub(crate) flags: Flags,
+}
+
+/// The absolute value's bits, which are in its order.
+#[inline(always)]
+fn bits_of<N: Number>(value: N) -> u32 {
+    value.abs().to_bits()
 }
 
 /// Whether a difference is neither zero nor as large as the limit; as bits, in which zero becomes the largest.
@@ -92,23 +101,18 @@ impl<N: Number> Law<N> {
         }
     }
 
-    /// Whether everything is there, has changed, and by no more than it may.
+    /// Whether nothing is wrong: theta and the motor torque have changed, and nothing by more than it may.
     #[inline(always)]
-    pub(crate) fn ordinary(
-        &self,
-        memory: &Memory<N>,
-        gyro: N,
-        torque: N,
-        inputs: &[N; INPUTS],
-        faults: Faults,
-    ) -> bool {
-        let mut well = moved_within(gyro - memory.gyro, self.gyro_range.to_bits())
+    pub(crate) fn ordinary(&self, memory: &Memory<N>, gyro: N, torque: N, row: &Input<N>, faults: Faults) -> bool {
+        let [x, y, z, rate] = memory.inputs;
+        // Bits that either has: at least the larger of the two.
+        let accel = bits_of(row.accel_x_mps2 - x) | bits_of(row.accel_y_mps2 - y) | bits_of(row.accel_z_mps2 - z);
+        let [accel_jump, .., rate_jump] = self.jumps;
+        (gyro.to_bits() != memory.gyro.to_bits())
             & moved_within(torque - memory.torque, self.torque_jump)
-            & (faults.bits() & WRONG == 0);
-        for ((now, last), jump) in inputs.iter().zip(&memory.inputs).zip(self.jumps) {
-            well &= moved_within(*now - *last, jump);
-        }
-        well
+            & (accel < accel_jump)
+            & (bits_of(row.vehicle_rate_radps - rate) < rate_jump)
+            & (faults.bits() & WRONG == 0)
     }
 
     /// Looks at each reading by itself.
@@ -134,7 +138,7 @@ impl<N: Number> Law<N> {
         health.gyro_missing = if fresh.is_some() { 0 } else { before.saturating_add(1) };
         flags |= Flags::GYRO_LOST.when(health.gyro_missing > self.bridge_rows);
 
-        let (mut torque, mut catch_up) = (None, N::ZERO);
+        let (mut torque, mut catch_up, mut spiked) = (None, N::ZERO, false);
         if self.torque_measured {
             torque = measured.motor_torque_nm.filter(|torque| torque.within(self.torque_range));
             let equal = torque.is_some_and(|torque| torque == memory.torque);
@@ -148,6 +152,7 @@ impl<N: Number> Law<N> {
             // The first row has nothing to jump from.
             let hold = jumped && !health.torque_held && memory.regime != super::state::Regime::New;
             let confirmed = jumped && health.torque_held;
+            spiked = health.torque_held && !jumped;
             health.torque_held = hold;
             if confirmed {
                 catch_up = memory.torque_waiting - memory.torque;
@@ -166,6 +171,7 @@ impl<N: Number> Law<N> {
             gyro: fresh,
             torque,
             catch_up,
+            torque_spiked: spiked,
             gyro_missing: health.gyro_missing,
             gyro_back: fresh.is_some() && (before >= OUTAGE || health.gyro_rejected >= OUTAGE),
             torque_lost: self.torque_measured && torque.is_none(),
@@ -177,9 +183,7 @@ impl<N: Number> Law<N> {
         let mut flags = Flags::NONE;
         let first = memory.regime == super::state::Regime::New;
         for (i, (now, last)) in inputs.iter().zip(&mut memory.inputs).enumerate() {
-            let (equal_rows, held) = (&mut memory.health.inputs_equal[i], &mut memory.health.inputs_held[i]);
-            *equal_rows = if now == last { equal_rows.saturating_add(1) } else { 0 };
-            flags |= Flags::INPUT_STUCK.when(self.stuck_rows > 0 && *equal_rows >= self.stuck_rows);
+            let held = &mut memory.health.inputs_held[i];
             let jumped = !(*now - *last).abs().within(N::from_bits(self.jumps[i]));
             *held = jumped && !*held && !first;
             if *held {
@@ -189,6 +193,17 @@ impl<N: Number> Law<N> {
             }
         }
         flags
+    }
+
+    /// At the end of a block of rows: whether an input has not changed since the last one's.
+    pub(crate) fn watch_inputs(&self, memory: &mut Memory<N>) {
+        let mut stuck = false;
+        for ((now, last), rows) in memory.inputs.iter().zip(&mut memory.block_inputs).zip(&mut memory.equal_inputs) {
+            *rows = if now == last { rows.saturating_add(BLOCK) } else { 0 };
+            stuck |= self.stuck_rows > 0 && *rows > self.stuck_rows + BLOCK;
+            *last = *now;
+        }
+        memory.lasting = memory.lasting.without(Flags::INPUT_STUCK) | Flags::INPUT_STUCK.when(stuck);
     }
 
     /// A reading of theta was held back.

@@ -2,8 +2,7 @@
 
 use super::filter::STATES;
 use super::flags::Flags;
-use super::{health, held};
-use crate::ins;
+use super::{health, held, sums};
 use crate::number::Number;
 use crate::stop::Side;
 
@@ -20,12 +19,26 @@ pub struct State<N: Number> {
     pub(crate) inputs: [N; health::INPUTS],
     /// Uncertainty from what the filter has not followed yet.
     pub(crate) transient: N,
+    /// theta's innovation at the last correction.
+    pub(crate) innovation: N,
+    /// What an outage of theta has added to it.
+    pub(crate) outage: N,
+    /// Rows for which the disturbance is taken to change quickly.
+    pub(crate) lively: u32,
     /// d without its noise, for the balance on a stop.
     pub(crate) level: N,
     /// What phi has moved unseen by the gyro, and its uncertainty.
     pub(crate) offset: N::Wide,
     pub(crate) offset_bound: N,
-    pub(crate) ins: ins::State<N>,
+    pub(crate) sums: sums::State<N>,
+    /// Rows of the block so far.
+    pub(crate) rows: u32,
+    /// phi at the last row.
+    pub(crate) angle: N,
+    /// Inputs at the end of the last block.
+    pub(crate) block_inputs: [N; health::INPUTS],
+    /// Rows for which each has not changed.
+    pub(crate) equal_inputs: [u32; health::INPUTS],
     pub(crate) regime: Regime,
     /// Whether the next row needs a closer look: settling, or a sensor that was not well.
     pub(crate) watched: bool,
@@ -42,7 +55,7 @@ pub struct State<N: Number> {
     /// The servo as it follows theta, where the motor torque is not measured.
     pub(crate) servo: [N::Wide; 6],
     pub(crate) servo_theta: N,
-    /// Bits that stay set.
+    /// Bits that stay set, and that of stuck inputs.
     pub(crate) lasting: Flags,
 }
 
@@ -64,10 +77,17 @@ impl<N: Number> State<N> {
             gyro: N::ZERO,
             inputs: [N::ZERO; health::INPUTS],
             transient: N::ZERO,
+            innovation: N::ZERO,
+            outage: N::ZERO,
+            lively: 0,
             level: N::ZERO,
             offset: N::Wide::default(),
             offset_bound: N::ZERO,
-            ins: ins::State::default(),
+            sums: sums::State::default(),
+            rows: 0,
+            angle: N::ZERO,
+            block_inputs: [N::ZERO; health::INPUTS],
+            equal_inputs: [0; health::INPUTS],
             regime: Regime::New,
             watched: true,
             health: health::State::default(),

@@ -80,7 +80,10 @@ pub struct Law<N: Number> {
     zone: ScaledRow<N, 1>,
     /// The same for theta's recent peak.
     share: ScaledRow<N, 1>,
+    /// Of the peak, over a block.
     decay: N::Coef,
+    /// One over the rows of a block.
+    share_of_block: N::Coef,
     allowance: N,
     largest: N,
     threshold: N,
@@ -97,6 +100,9 @@ pub struct State<N: Number> {
     score: N,
     /// Friction level of the last reversal, and rows since.
     level: N,
+    /// Whether there was one within this block.
+    reversed: bool,
+    saturated: bool,
     since_reversal: u32,
     since_saturation: u32,
     peak: N,
@@ -144,7 +150,8 @@ impl Config {
             noise: N::quantise(noise * noise, square),
             zone: ScaledRow::build([zone], [units.torque], exponent),
             share: ScaledRow::build([self.model_tolerance], [units.gyro_angle], exponent),
-            decay: N::coef(1.0 - axis.period_s / 0.5),
+            decay: N::coef(libm::exp(-f64::from(BLOCK) * axis.period_s / 0.5)),
+            share_of_block: N::coef(1.0 / f64::from(BLOCK)),
             allowance: N::quantise(ALLOWANCE, G_SCALE),
             largest: N::quantise(LARGEST, M_SCALE),
             threshold: N::quantise(threshold, G_SCALE),
@@ -182,22 +189,19 @@ impl<N: Number> Law<N> {
         model: &ModelState<N>,
     ) -> Report<N> {
         if modelled.relative_rate_radps.within(self.slip_rate) {
-            state.since_reversal = 0;
+            state.reversed = true;
             state.level = model.friction_level;
-        } else {
-            state.since_reversal = state.since_reversal.saturating_add(1);
         }
         let mut residual = N::ZERO;
         if let Some(measured) = measured {
             residual = measured.shift_up(self.measured_shift) - modelled.gyro_angle_rad.shift_up(self.modelled_shift);
         }
-        state.since_saturation = state.since_saturation.saturating_add(1);
         if modelled.stop != Stop::Free {
-            state.since_saturation = 0;
+            state.saturated = true;
         }
-        state.peak = N::head(self.decay * state.peak).most(modelled.gyro_angle_rad.abs());
+        state.peak = state.peak.most(modelled.gyro_angle_rad.abs());
         // A sum of 32 squares over 32.
-        state.sum = state.sum + thirty_second(residual.times(residual));
+        state.sum = state.sum + N::head(self.share_of_block * residual.times(residual));
         state.rows += 1;
         if state.rows >= BLOCK {
             self.close(state);
@@ -209,6 +213,10 @@ impl<N: Number> Law<N> {
     /// The end of a block.
     #[inline(never)]
     fn close(&self, state: &mut State<N>) {
+        let rows_since = |since: u32, now: bool| if now { 0 } else { since.saturating_add(BLOCK) };
+        state.since_reversal = rows_since(state.since_reversal, state.reversed);
+        state.since_saturation = rows_since(state.since_saturation, state.saturated);
+        (state.reversed, state.saturated) = (false, false);
         let mut variance = self.noise;
         state.regime = Regime::Slip;
         if state.since_reversal < self.felt {
@@ -218,6 +226,7 @@ impl<N: Number> Law<N> {
         }
         let share = self.share.at(&[state.peak]);
         variance = variance + share.times(share).shift_down(M_SHIFT);
+        state.peak = N::head(self.decay * state.peak);
         let m = state.sum.ratio(variance).least(self.largest);
         (state.sum, state.rows) = (N::ZERO, 0);
         if state.since_saturation < PAUSE {
@@ -234,16 +243,12 @@ impl<N: Number> Law<N> {
 
     /// theta on or near a stop as measured: the test pauses.
     pub fn pause(&self, state: &mut State<N>) {
-        state.since_saturation = 0;
+        state.saturated = true;
     }
 }
 
 const M_SHIFT: u32 = M_SCALE.unsigned_abs();
 const G_SHIFT: u32 = (G_SCALE - M_SCALE).unsigned_abs();
-
-fn thirty_second<N: Number>(value: N) -> N {
-    value.half().half().half().half().half()
-}
 
 /// The positive root a of `E[e^(a (m - k))] = 1` for m the mean of [`BLOCK`] squares of normal numbers:
 /// `-(B/2) ln(1 - 2 a / B) = a k`.
