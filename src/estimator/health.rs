@@ -102,6 +102,7 @@ impl<N: Number> Law<N> {
     }
 
     /// Whether nothing is wrong: theta and the motor torque have changed, and nothing by more than it may.
+    #[allow(clippy::needless_bitwise_bool, reason = "one branch for all")]
     #[inline(always)]
     pub(crate) fn ordinary(&self, memory: &Memory<N>, gyro: N, torque: N, row: &Input<N>, faults: Faults) -> bool {
         let [x, y, z, rate] = memory.inputs;

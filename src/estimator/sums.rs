@@ -40,7 +40,7 @@ pub(crate) struct Law<N: Number> {
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(units: &Units, largest_accel: f64, period_s: f64) -> Self {
-        let shifted = 2 * DOWN.cast_signed();
+        let shifted = 2 * i32::try_from(DOWN).unwrap_or_default();
         let full = if N::HAS_SCALES { units.accel + units.gimbal_angle + shifted } else { 0 };
         // The same count in both number systems, where their full scales allow.
         let count = (libm::frexp(largest_accel).1 + shifted).max(full) - 30;
