@@ -24,21 +24,21 @@ pub(crate) type State<N> = [<N as Number>::Wide; ORDER];
 /// A pair of modes: its matrix, what drives it, and its part of two outputs, together because they are used together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
-struct Block<N: Number> {
-    transition: [N::Coef; 4],
-    drive: [N::Coef; 2],
-    gimbal_angle: [N::Coef; 2],
-    motor_torque: [N::Coef; 2],
+pub(crate) struct Block<N: Number> {
+    pub(crate) transition: [N::Coef; 4],
+    pub(crate) drive: [N::Coef; 2],
+    pub(crate) gimbal_angle: [N::Coef; 2],
+    pub(crate) motor_torque: [N::Coef; 2],
 }
 
 /// The ninth mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
-struct Single<N: Number> {
-    transition: N::Coef,
-    drive: N::Coef,
-    gimbal_angle: N::Coef,
-    motor_torque: N::Coef,
+pub(crate) struct Single<N: Number> {
+    pub(crate) transition: N::Coef,
+    pub(crate) drive: N::Coef,
+    pub(crate) gimbal_angle: N::Coef,
+    pub(crate) motor_torque: N::Coef,
 }
 
 /// An output at the end of a period: of the modes at its start, and of the torque's change.
@@ -48,13 +48,13 @@ type Output<N> = Row<N, { ORDER + 1 }>;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub(crate) struct Law<N: Number> {
-    gimbal_rate: Output<N>,
-    blocks: [Block<N>; BLOCKS],
-    single: Single<N>,
+    pub(crate) gimbal_rate: Output<N>,
+    pub(crate) blocks: [Block<N>; BLOCKS],
+    pub(crate) single: Single<N>,
     /// What the torque's change adds to an output.
-    gimbal_angle: N::Coef,
-    motor_torque: N::Coef,
-    gyro_angle: Output<N>,
+    pub(crate) gimbal_angle: N::Coef,
+    pub(crate) motor_torque: N::Coef,
+    pub(crate) gyro_angle: Output<N>,
     /// Change of phi' over a period for a torque of 1.
     pub(crate) gimbal_rate_gain: Row<N, 1>,
     /// theta' times the period, at one instant.

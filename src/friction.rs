@@ -18,9 +18,32 @@ use crate::units::Units;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law<N: Number> {
     /// `w_s`.
-    slip_rate: N,
+    pub(crate) slip_rate: N,
     /// `1 / w_s`.
-    steepness: ScaledRow<N, 1>,
+    pub(crate) steepness: ScaledRow<N, 1>,
+}
+
+/// A period that starts in the clamp's zone: `w(1) = w_s level / stiffness` if it ends there, too.
+#[derive(Clone, Copy)]
+pub(crate) struct Zone<N> {
+    /// The clamp at the start.
+    here: N,
+    level: N,
+    stiffness: N,
+}
+
+impl<N: Number> Zone<N> {
+    /// Whether the period ends in the zone.
+    #[inline(always)]
+    pub(crate) fn is_kept(&self) -> bool {
+        self.level.abs() <= self.stiffness
+    }
+
+    /// m, if it does.
+    #[inline(always)]
+    pub(crate) fn mean(&self) -> N {
+        self.here.half() + self.level.ratio(self.stiffness).half()
+    }
 }
 
 impl<N: Number> Law<N> {
@@ -81,16 +104,21 @@ impl<N: Number> Law<N> {
         }
     }
 
+    /// What decides whether the zone, in which the period starts, is left.
+    #[inline(always)]
+    pub(crate) fn zone(&self, start: N, free_end: N, brake: N) -> Zone<N> {
+        let here = self.clamp(start);
+        let half_brake = brake.half();
+        Zone { here, level: free_end - half_brake.times(here), stiffness: self.slip_rate + half_brake }
+    }
+
     /// The zone is where the period starts; it may be left on either side.
     #[inline(never)]
     fn mean_from_zone(&self, start: N, free_end: N, brake: N) -> N {
-        let slip = self.slip_rate;
-        let here = self.clamp(start);
-        let half_brake = brake.half();
-        let level = free_end - half_brake.times(here);
-        let stiffness = slip + half_brake;
-        if level.abs() <= stiffness {
-            here.half() + level.ratio(stiffness).half()
+        let zone = self.zone(start, free_end, brake);
+        let Zone { here, level, .. } = zone;
+        if zone.is_kept() {
+            zone.mean()
         } else if level > N::ZERO {
             self.mean_out_of_zone(start, free_end, brake, here)
         } else {

@@ -9,10 +9,10 @@ use crate::units::Units;
 /// Largest inputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law<N> {
-    radial_accel: N,
-    axial_accel: N,
-    rate: N,
-    torque: N,
+    pub(crate) radial_accel: N,
+    pub(crate) axial_accel: N,
+    pub(crate) rate: N,
+    pub(crate) torque: N,
 }
 
 impl<N: Number> Law<N> {
@@ -29,14 +29,18 @@ impl<N: Number> Law<N> {
     /// it is not a number.
     #[inline(always)]
     pub(crate) fn admit(&self, last: &Input<N>, row: &mut Input<N>) -> Faults {
-        // One branch for all six.
-        let within = row.accel_x_mps2.within(self.radial_accel)
+        if self.admits(row) { Faults::NONE } else { self.mend(last, row) }
+    }
+
+    /// Whether the row may be taken as it is: one branch for all six.
+    #[inline(always)]
+    pub(crate) fn admits(&self, row: &Input<N>) -> bool {
+        row.accel_x_mps2.within(self.radial_accel)
             & row.accel_y_mps2.within(self.radial_accel)
             & row.accel_z_mps2.within(self.axial_accel)
             & row.vehicle_rate_radps.within(self.rate)
             & row.torque_nm.within(self.torque)
-            & row.spin_rate_radps.within(self.rate);
-        if within { Faults::NONE } else { self.mend(last, row) }
+            & row.spin_rate_radps.within(self.rate)
     }
 
     #[cold]

@@ -35,7 +35,7 @@ pub(crate) struct Sums {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law<N: Number> {
     /// Counts in a product of 1 m/s2 and 1 rad.
-    scale: N::Coef,
+    pub(crate) scale: N::Coef,
     /// One count [m/s2].
     count_mps2: f64,
     period_s: f64,

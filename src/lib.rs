@@ -29,6 +29,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod batch;
 pub mod bearing;
 mod bits;
 mod build;

@@ -8,7 +8,7 @@
 //! same bits on every host and target.
 
 mod fixed;
-mod float;
+pub(crate) mod float;
 
 pub use fixed::Fixed;
 

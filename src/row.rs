@@ -41,9 +41,9 @@ impl<N: Number, const L: usize> Row<N, L> {
 /// unrolled, for the sake of the program's size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ScaledRow<N: Number, const L: usize> {
-    coefs: [N::Coef; L],
+    pub(crate) coefs: [N::Coef; L],
     /// The coefficients are `2^shift` too small, so that fractions can hold them.
-    shift: u32,
+    pub(crate) shift: u32,
 }
 
 impl<N: Number, const L: usize> ScaledRow<N, L> {

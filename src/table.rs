@@ -8,9 +8,16 @@ use crate::number::Number;
 
 /// A chord: `offset + slope * x`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Chord<N: Number> {
-    offset: N,
-    slope: N::Coef,
+pub(crate) struct Chord<N: Number> {
+    pub(crate) offset: N,
+    pub(crate) slope: N::Coef,
+}
+
+impl<N: Number> Chord<N> {
+    #[inline(always)]
+    pub(crate) fn at(&self, argument: N) -> N {
+        self.offset + N::head(self.slope * argument)
+    }
 }
 
 /// Octaves that a [`PowerTable`] covers; below them it goes on along the lowest chord.
@@ -45,10 +52,24 @@ impl<N: Number> PowerTable<N> {
     /// The function's value. In fixed point `to` must be a full scale in which every slope is below 1.
     #[inline(always)]
     pub(crate) fn at(&self, argument: N) -> N {
-        let segment = (argument.sixteenth() - self.first).max(0).unsigned_abs() as usize;
-        let chord = &self.chords[segment & (CHORDS - 1)];
-        chord.offset + N::head(chord.slope * argument)
+        self.chord(segment(self.first, argument)).at(argument)
     }
+
+    /// Segment 0 in steps of [`Number::sixteenth`].
+    pub(crate) fn first(&self) -> i32 {
+        self.first
+    }
+
+    #[inline(always)]
+    pub(crate) fn chord(&self, segment: u32) -> &Chord<N> {
+        &self.chords[segment as usize & (CHORDS - 1)]
+    }
+}
+
+/// Segment of an argument in a [`PowerTable`] whose first one is `first`.
+#[inline(always)]
+pub(crate) fn segment<N: Number>(first: i32, argument: N) -> u32 {
+    (argument.sixteenth() - first).max(0).unsigned_abs()
 }
 
 /// Square root of a mantissa of two octaves, 32 chords each, to 3.1e-5.
@@ -74,7 +95,11 @@ impl<N: Number> SqrtTable<N> {
     /// The chord of `segment` (its lowest six bits) at `mantissa`.
     #[inline(always)]
     pub(crate) fn chord(&self, segment: u32, mantissa: N) -> N {
-        let chord = &self.chords[(segment & 63) as usize];
-        chord.offset + N::head(chord.slope * mantissa)
+        self.segment(segment).at(mantissa)
+    }
+
+    #[inline(always)]
+    pub(crate) fn segment(&self, segment: u32) -> &Chord<N> {
+        &self.chords[(segment & 63) as usize]
     }
 }

@@ -11,28 +11,28 @@ use crate::units::Units;
 /// (6.1) and (6.2) cross where one ends and the other begins, so that their larger one is the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Law<N: Number> {
-    largest_radial: N,
+    pub(crate) largest_radial: N,
     /// `F_s` of `|a_z|` and `A_r`, less its part from the preload.
-    static_load: Row<N, 2>,
-    static_preload: N,
+    pub(crate) static_load: Row<N, 2>,
+    pub(crate) static_preload: N,
     /// (6.1)'s load, likewise.
-    axial_load: Row<N, 2>,
-    axial_preload: N,
+    pub(crate) axial_load: Row<N, 2>,
+    pub(crate) axial_preload: N,
     /// (6.2)'s load of `A_r`.
-    radial_load: Row<N, 1>,
+    pub(crate) radial_load: Row<N, 1>,
     /// From the product of power and load to the full scale of torques.
-    shift: u32,
-    viscous_break: N,
-    viscous_low: N,
+    pub(crate) shift: u32,
+    pub(crate) viscous_break: N,
+    pub(crate) viscous_low: N,
 }
 
 /// Its tables.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tables<N: Number> {
-    sqrt: SqrtTable<N>,
+    pub(crate) sqrt: SqrtTable<N>,
     /// `c n F_s^0.33`, n the number of bearings.
-    power: PowerTable<N>,
-    viscous_high: PowerTable<N>,
+    pub(crate) power: PowerTable<N>,
+    pub(crate) viscous_high: PowerTable<N>,
 }
 
 impl<N: Number> Tables<N> {
@@ -104,10 +104,22 @@ impl<N: Number> Law<N> {
         let table_end = radial > self.largest_radial;
         let radial = radial.least(self.largest_radial);
         let axial = accel_z.abs();
-        let power = tables.power.at(self.static_preload + self.static_load.at(&[axial, radial]));
-        let load = (self.axial_preload + self.axial_load.at(&[axial, radial])).most(self.radial_load.at(&[radial]));
+        let power = tables.power.at(self.static_load(axial, radial));
+        let load = self.load(axial, radial);
         let speed = rate.abs();
         let viscous = if speed > self.viscous_break { tables.viscous_high.at(speed) } else { self.viscous_low };
         Level { torque: power.times(load).shift_up(self.shift) + viscous, table_end }
+    }
+
+    /// `F_s`.
+    #[inline(always)]
+    pub(crate) fn static_load(&self, axial: N, radial: N) -> N {
+        self.static_preload + self.static_load.at(&[axial, radial])
+    }
+
+    /// What the power of `F_s` is multiplied by.
+    #[inline(always)]
+    pub(crate) fn load(&self, axial: N, radial: N) -> N {
+        (self.axial_preload + self.axial_load.at(&[axial, radial])).most(self.radial_load.at(&[radial]))
     }
 }

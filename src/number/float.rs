@@ -14,6 +14,31 @@ const SIGN: u32 = 1 << 31;
 const EXPONENT_SHIFT: u32 = 23;
 const ONE_BITS: u32 = 127 << EXPONENT_SHIFT;
 
+/// A sum of two squares, `m 4^k` with `1 <= m < 4`.
+#[derive(Clone, Copy)]
+pub(crate) struct Square {
+    /// Segment of m in its table, in the lowest six bits.
+    pub(crate) segment: u32,
+    /// m
+    pub(crate) mantissa: f32,
+    /// 2^k
+    pub(crate) power: f32,
+}
+
+impl Square {
+    #[inline(always)]
+    pub(crate) fn of_sum(one: f32, other: f32) -> Self {
+        let square = one * one + other * other;
+        // One added to the exponent makes its lowest bit the parity that m keeps.
+        let bits = square.to_bits().wrapping_add(1 << EXPONENT_SHIFT);
+        Self {
+            segment: bits >> 18,
+            mantissa: f32::from_bits((bits & 0x00FF_FFFF) + ONE_BITS),
+            power: f32::from_bits(((bits >> 24) + 63) << EXPONENT_SHIFT),
+        }
+    }
+}
+
 impl Number for f32 {
     type Coef = f32;
     type Wide = f32;
@@ -103,12 +128,8 @@ impl Number for f32 {
     /// With `s = m 4^k`, `1 <= m < 4`: the table's chord at m, times 2^k.
     #[inline(always)]
     fn hypot(self, other: f32, table: &SqrtTable<f32>) -> f32 {
-        let square = self * self + other * other;
-        // One added to the exponent makes its lowest bit the parity that m keeps.
-        let bits = square.to_bits() + (1 << EXPONENT_SHIFT);
-        let mantissa = f32::from_bits((bits & 0x00FF_FFFF) + ONE_BITS);
-        let power = f32::from_bits(((bits >> 24) + 63) << EXPONENT_SHIFT);
-        table.chord(bits >> 18, mantissa) * power
+        let Square { segment, mantissa, power } = Square::of_sum(self, other);
+        table.chord(segment, mantissa) * power
     }
 
     #[inline(always)]
