@@ -2,6 +2,7 @@
 
 mod diagnose;
 mod forge;
+mod freeze;
 mod score;
 
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -19,6 +20,8 @@ pub(crate) struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
+    /// Records the program that will diagnose, before the seed of its corpus is drawn.
+    Freeze(freeze::Args),
     /// Makes a corpus: logs, nominal models, and answers that only the key opens.
     Forge(forge::Args),
     /// Runs a diagnosis over the logs alone and commits its reports to a manifest.
@@ -30,6 +33,7 @@ enum Command {
 /// Runs `gimbal blind`.
 pub(crate) fn blind(args: &Args) -> Result<(), Failure> {
     match &args.command {
+        Command::Freeze(args) => freeze::freeze(args),
         Command::Forge(args) => forge::forge(args),
         Command::Diagnose(args) => diagnose::diagnose(args),
         Command::Score(args) => score::score(args),

@@ -9,6 +9,8 @@ use crate::interrupt;
 /// Why the program cannot do what was asked.
 #[derive(Debug)]
 pub(crate) enum Failure {
+    /// It ran, and the answer is "fails": status 1.
+    Fails(String),
     /// The input or the call is wrong: status 2.
     Input(anyhow::Error),
     /// The environment failed: status 3.
@@ -82,6 +84,7 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
 pub(crate) fn code(result: Result<(), Failure>) -> ExitCode {
     let (message, status) = match result {
         Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Fails(message)) => (message, 1),
         Err(Failure::Input(error)) => (error.to_string(), 2),
         Err(Failure::Environment(error)) => (error.to_string(), 3),
         Err(Failure::Interrupted) => ("interrupted; no file is half-written".to_owned(), 130),

@@ -30,9 +30,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All kinds, with their shares of a corpus in percent.
-    pub const SHARES: [(Self, usize); 5] =
-        [(Self::Nothing, 20), (Self::One, 40), (Self::Two, 20), (Self::Three, 5), (Self::Beyond, 15)];
+    /// All kinds, in the order of their shares.
+    pub const ALL: [Self; 5] = [Self::Nothing, Self::One, Self::Two, Self::Three, Self::Beyond];
 
     /// Name in tables.
     #[must_use]
@@ -67,6 +66,23 @@ pub struct Recipe {
     pub length_s: (f64, f64),
     /// The real flight, if there.
     pub rocket: Option<Rocket>,
+    /// Shares of nothing, one, two, three and beyond [percent].
+    pub shares: [usize; 5],
+    /// Least and largest size of an effect over the detectable one.
+    pub multiples: (f64, f64),
+}
+
+/// Shares of a scoring corpus [percent].
+pub const SHARES: [usize; 5] = [20, 40, 20, 5, 15];
+/// Sizes over the detectable one in a scoring corpus.
+pub const MULTIPLES: (f64, f64) = (0.5, 10.0);
+
+impl Recipe {
+    /// The recipe of a scoring corpus.
+    #[must_use]
+    pub fn scoring(logs: usize, seed: Seed, length_s: (f64, f64), rocket: Option<Rocket>) -> Self {
+        Self { logs, seed, length_s, rocket, shares: SHARES, multiples: MULTIPLES }
+    }
 }
 
 /// One effect of a log, as it was put in.
@@ -143,18 +159,22 @@ pub struct Case {
     pub answer: Answer,
 }
 
-/// The kind of every log, in the order of the logs. The counts are the shares, rounded; the rest is `One`.
+/// The kind of every log, in the order of the logs. The counts are the shares, rounded; the rest is of the commonest
+/// kind.
 #[must_use]
-pub fn kinds(logs: usize, seed: &Seed) -> Vec<Kind> {
+pub fn kinds(recipe: &Recipe) -> Vec<Kind> {
+    let logs = recipe.logs;
+    let largest = recipe.shares.iter().copied().max().unwrap_or(0);
+    let common = Kind::ALL[recipe.shares.iter().position(|share| *share == largest).unwrap_or(0)];
     let mut kinds = Vec::with_capacity(logs);
-    for (kind, percent) in Kind::SHARES {
-        if kind != Kind::One {
+    for (kind, percent) in Kind::ALL.into_iter().zip(recipe.shares) {
+        if kind != common {
             kinds.extend(std::iter::repeat_n(kind, (logs * percent + 50) / 100));
         }
     }
     kinds.truncate(logs);
-    kinds.resize(logs, Kind::One);
-    Draw::new(seed, 0).shuffle(&mut kinds);
+    kinds.resize(logs, common);
+    Draw::new(&recipe.seed, 0).shuffle(&mut kinds);
     kinds
 }
 

@@ -5,6 +5,8 @@
 //! DIR/logs/00001.csv       a log        DIR/logs/00001.toml   its nominal model
 //! DIR/answers.age          the sealed answers; the key is elsewhere
 //! REPORTS/00001/gap.json   a report     REPORTS/manifest.json hashes and times, written when all are there
+//! DIR/freeze.json          the record of the diagnosis that the seed was drawn after
+//! DIR/diagnosed.json       where the one diagnosis went
 //! KEY.released DIR/opened.json          when the answers were opened, and for which manifest
 //! ```
 
@@ -15,6 +17,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::corpus::Answer;
+use crate::freeze;
 use crate::seal::{self, sha256};
 
 /// Name of the form of a corpus.
@@ -29,6 +32,12 @@ pub struct Published {
     pub schema: String,
     /// When it was made [s since 1970].
     pub made_unix_s: u64,
+    /// Whether the answers lie beside the logs, for development.
+    #[serde(default)]
+    pub open: bool,
+    /// SHA-256 of the record of the diagnosis that the seed was drawn after; none for a check with a known seed.
+    #[serde(default)]
+    pub freeze_sha256: Option<String>,
     /// SHA-256 of the answers before sealing.
     pub answers_sha256: String,
     /// SHA-256 of the sealed answers.
@@ -44,12 +53,21 @@ pub struct Published {
 pub struct Answers {
     /// Seed in hexadecimal digits, from which the corpus can be made again.
     pub seed: String,
+    /// What was mixed with the record of the diagnosis to give the seed, in hexadecimal digits.
+    #[serde(default)]
+    pub nonce: Option<String>,
     /// Version of the forge.
     pub version: String,
     /// SHA-256 of the real flight that served as input, if one did.
     pub rocket_sha256: Option<String>,
     /// Least and largest length of a log [s].
     pub length_s: (f64, f64),
+    /// Shares of nothing, one, two, three and beyond [percent].
+    #[serde(default)]
+    pub shares: [usize; 5],
+    /// Least and largest size over the detectable one.
+    #[serde(default)]
+    pub multiples: (f64, f64),
     /// One a log.
     pub answers: Vec<Answer>,
 }
@@ -83,6 +101,34 @@ pub struct Manifest {
     pub span_unix_s: (u64, u64),
     /// One a log.
     pub reports: Vec<Entry>,
+}
+
+/// Where the one diagnosis of a corpus goes: written before its first report.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Claim {
+    /// Folder of the reports.
+    pub reports: PathBuf,
+    /// SHA-256 of the program.
+    pub program_sha256: String,
+    /// [s since 1970]
+    pub begun_unix_s: u64,
+}
+
+/// Claims a corpus for one diagnosis; the same one may go on.
+///
+/// # Errors
+/// Another one has it.
+pub fn claim(corpus: &Path, claim: &Claim) -> Result<(), Refusal> {
+    let path = corpus.join("diagnosed.json");
+    if !path.exists() {
+        return write_json(&path, claim);
+    }
+    let before: Claim = read_json(&path)?;
+    if before.reports == claim.reports && before.program_sha256 == claim.program_sha256 {
+        Ok(())
+    } else {
+        Err(Refusal::Diagnosed(before.reports.display().to_string()))
+    }
 }
 
 /// When answers were opened, and for which manifest.
@@ -130,6 +176,28 @@ pub enum Refusal {
     /// The corpus was opened for another diagnosis before.
     #[error("this corpus was opened for another diagnosis already; one diagnosis a corpus")]
     OpenedBefore,
+    /// The program or its calibration is not the one on record.
+    #[error("the diagnosis is not the one that was recorded before the seed was drawn ({recorded}, not {found})")]
+    OtherProgram {
+        /// On record.
+        recorded: String,
+        /// Found.
+        found: String,
+    },
+    /// An act came too early.
+    #[error("{later} is newer than {earlier}; a scoring corpus is made after the record and before the diagnosis")]
+    Order {
+        /// Should be the older one.
+        later: &'static str,
+        /// Should be the newer one.
+        earlier: &'static str,
+    },
+    /// The seed does not come from the record.
+    #[error("the seed was not drawn after the record of the diagnosis")]
+    Seed,
+    /// The logs were seen by another diagnosis.
+    #[error("{0}: this corpus is being diagnosed there, or was; one diagnosis a corpus")]
+    Diagnosed(String),
     /// Key or sealed answers.
     #[error(transparent)]
     Seal(#[from] seal::SealError),
@@ -218,6 +286,10 @@ pub fn open_answers(
         return Err(Refusal::OtherCorpus);
     }
     let newest = check_reports(&published, &manifest, reports)?;
+    let freeze = freeze::of_corpus(corpus, &published)?;
+    if let Some(freeze) = &freeze {
+        freeze.check_order(&published, &manifest)?;
+    }
     let sealed = read(&corpus.join("answers.age"))?;
     if sha256(&sealed) != published.sealed_sha256 {
         return Err(Refusal::Corpus("answers.age".to_owned()));
@@ -253,7 +325,32 @@ pub fn open_answers(
     if sha256(&plain) != published.answers_sha256 {
         return Err(Refusal::Corpus("the answers inside answers.age".to_owned()));
     }
-    let answers = serde_json::from_slice(&plain).map_err(|why| Refusal::file(&corpus.join("answers.age"), why))?;
+    let answers: Answers =
+        serde_json::from_slice(&plain).map_err(|why| Refusal::file(&corpus.join("answers.age"), why))?;
+    if let (Some(freeze), Some(sha256)) = (&freeze, &published.freeze_sha256) {
+        freeze.check_seed(sha256, &answers)?;
+    }
+    Ok((answers, manifest))
+}
+
+/// The answers of a development set, whose reports may be made again and again.
+///
+/// # Errors
+/// A file is missing or not the one that was published, or the manifest belongs to another corpus.
+pub fn development_answers(corpus: &Path, reports: &Path) -> Result<(Answers, Manifest), Refusal> {
+    let published_path = corpus.join("corpus.json");
+    let published: Published = read_json(&published_path)?;
+    let manifest: Manifest = read_json(&reports.join("manifest.json"))?;
+    if manifest.corpus_sha256 != sha256(&read(&published_path)?) {
+        return Err(Refusal::OtherCorpus);
+    }
+    check_reports(&published, &manifest, reports)?;
+    let path = corpus.join("answers.json");
+    let plain = read(&path)?;
+    if sha256(&plain) != published.answers_sha256 {
+        return Err(Refusal::Corpus("answers.json".to_owned()));
+    }
+    let answers = serde_json::from_slice(&plain).map_err(|why| Refusal::file(&path, why))?;
     Ok((answers, manifest))
 }
 

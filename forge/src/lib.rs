@@ -9,6 +9,7 @@ mod draw;
 pub mod effects;
 pub mod excitation;
 pub mod folder;
+pub mod freeze;
 mod machine;
 mod memory;
 mod palmgren;

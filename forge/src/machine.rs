@@ -82,6 +82,36 @@ struct Torques {
     motor: f64,
 }
 
+/// Load torque of the bearings along a track, at the begin, the middle and the end of every step [N m]: the same for
+/// every platform that runs along it.
+#[derive(Debug, Clone)]
+pub struct Loads {
+    steps_per_row: usize,
+    /// Two a step: begin and middle; the end is the next begin.
+    halves_nm: Vec<f64>,
+}
+
+impl Loads {
+    /// For platforms with these bearings.
+    #[must_use]
+    pub fn new(bearing: &gimbal_servo::bearing::Config, track: &Track, steps_per_row: usize) -> Self {
+        let palmgren = Palmgren::new(bearing);
+        let halves = 2 * steps_per_row;
+        let halves_nm = (0..=(track.rows.len() - 1) * halves)
+            .map(|half| {
+                let (from, to) = track.around(half / halves);
+                palmgren.load_nm(from.towards(to, (half % halves) as f64 / halves as f64).accel_mps2)
+            })
+            .collect();
+        Self { steps_per_row, halves_nm }
+    }
+
+    fn of_step(&self, row: usize, step: usize) -> Option<[f64; 3]> {
+        let first = 2 * (row * self.steps_per_row + step);
+        self.halves_nm.get(first..first + 3).map(|three| [three[0], three[1], three[2]])
+    }
+}
+
 /// A platform that runs along a track.
 #[derive(Debug, Clone)]
 pub struct Machine<'a> {
@@ -100,6 +130,7 @@ pub struct Machine<'a> {
     history: Vec<f64>,
     frozen_nm: Option<f64>,
     contact_now: bool,
+    loads: Option<&'a Loads>,
     /// Times of contact and of release [s].
     pub events_s: Vec<f64>,
 }
@@ -126,17 +157,26 @@ impl<'a> Machine<'a> {
             history: Vec::new(),
             frozen_nm: None,
             contact_now: false,
+            loads: None,
             events_s: Vec::new(),
         }
+    }
+
+    /// Takes the load torques from a table made for its track and its bearings.
+    #[must_use]
+    pub fn with_loads(mut self, loads: Option<&'a Loads>) -> Self {
+        self.loads = loads.filter(|loads| loads.steps_per_row == self.steps_per_row);
+        self
     }
 
     /// Lets the platform settle under the inputs of the first row for `time_s`.
     pub fn settle(&mut self, time_s: f64) {
         let still = Track { period_s: self.track.period_s, rows: vec![self.track.rows[0]; 2] };
         let step_s = self.track.period_s / self.steps_per_row as f64;
+        let load_nm = Some([self.palmgren.load_nm(still.rows[0].accel_mps2); 3]);
         let mut spent = 0.0;
         while spent < time_s {
-            self.step(&still, 0, 0.0, step_s, 0.0);
+            self.step(&still, (0, 0.0), load_nm, step_s, 0.0);
             spent += step_s;
         }
         self.zero_record();
@@ -158,7 +198,8 @@ impl<'a> Machine<'a> {
         for step in 0..self.steps_per_row {
             let part = step as f64 / self.steps_per_row as f64;
             let time_s = self.start_s + (self.row as f64 + part) * track.period_s;
-            self.step(track, self.row, part, step_s, time_s);
+            let loads_nm = self.loads.and_then(|loads| loads.of_step(self.row, step));
+            self.step(track, (self.row, part), loads_nm, step_s, time_s);
         }
         self.row += 1;
     }
@@ -189,24 +230,32 @@ impl<'a> Machine<'a> {
         self.truth.drive.step_rad.map_or(angle_rad, |step| libm::round(angle_rad / step) * step)
     }
 
-    /// One step of `step_s` that begins a share `part` of the way from row `row` to the next.
-    fn step(&mut self, track: &Track, row: usize, part: f64, step_s: f64, time_s: f64) {
-        let (from, to) = (&track.rows[row.min(track.rows.len() - 1)], &track.rows[(row + 1).min(track.rows.len() - 1)]);
+    /// One step of `step_s` that begins a share `part` of the way from row `row` to the next; `loads_nm` at begin,
+    /// middle and end where they are known.
+    fn step(&mut self, track: &Track, (row, part): (usize, f64), loads_nm: Option<[f64; 3]>, step_s: f64, time_s: f64) {
+        let (from, to) = track.around(row);
         let series = |place: usize| self.truth.torque.series_nm.get(place).copied().unwrap_or(0.0);
         let (extra_from, extra_to) = (series(row), series(row + 1));
-        let stage_at = |palmgren: &Palmgren, offset_s: f64, since_commit_s: f64| {
+        let known_at = |offset_s: f64, since_commit_s: f64, load_nm: Option<f64>, palmgren: &Palmgren| {
             let share = part + offset_s / track.period_s;
             let mut row = from.towards(to, share);
             row.external_nm += extra_from + (extra_to - extra_from) * share;
-            Stage { row, load_nm: palmgren.load_nm(row.accel_mps2), time_s: time_s + offset_s, since_commit_s }
+            let load_nm = load_nm.unwrap_or_else(|| palmgren.load_nm(row.accel_mps2));
+            Stage { row, load_nm, time_s: time_s + offset_s, since_commit_s }
+        };
+        let stage_at = |palmgren: &Palmgren, offset_s: f64, since_commit_s: f64| {
+            known_at(offset_s, since_commit_s, None, palmgren)
         };
         self.note_command(time_s);
         let mut done_s = 0.0;
         while step_s - done_s > SHORTEST_S {
-            let begin = stage_at(&self.palmgren, done_s, 0.0);
+            // a step that was cut has other middles
+            let known = loads_nm.filter(|_| done_s == 0.0);
+            let load = |place: usize| known.map(|loads| loads[place]);
+            let begin = known_at(done_s, 0.0, load(0), &self.palmgren);
             let mut piece_s = step_s - done_s;
-            let middle = stage_at(&self.palmgren, done_s + 0.5 * piece_s, 0.5 * piece_s);
-            let end = stage_at(&self.palmgren, done_s + piece_s, piece_s);
+            let middle = known_at(done_s + 0.5 * piece_s, 0.5 * piece_s, load(1), &self.palmgren);
+            let end = known_at(done_s + piece_s, piece_s, load(2), &self.palmgren);
             let mut after = self.runge_kutta(&begin, &middle, &end, done_s, piece_s);
             let overshoot = |machine: &Self, states: &States, stage: &Stage| machine.beyond_event(states, stage);
             let mut last = end;

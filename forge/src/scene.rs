@@ -1,7 +1,7 @@
 //! A track, where the record begins on it, and what the instruments would show there without noise.
 
 use crate::effects::{Scale, World};
-use crate::machine::{Machine, Sample};
+use crate::machine::{Loads, Machine, Sample};
 use crate::track::Track;
 use crate::truth::Truth;
 
@@ -33,7 +33,14 @@ impl Scene {
     /// Runs a platform along the track of the scene, or along another one of the same length.
     #[must_use]
     pub fn run(&self, truth: &Truth, track: &Track, steps_per_row: usize) -> Vec<Sample> {
-        let mut machine = Machine::new(truth, track, steps_per_row, -(self.before as f64) * track.period_s);
+        self.run_with(truth, track, steps_per_row, None)
+    }
+
+    /// The same with load torques from a table for that track.
+    #[must_use]
+    pub fn run_with(&self, truth: &Truth, track: &Track, steps_per_row: usize, loads: Option<&Loads>) -> Vec<Sample> {
+        let start_s = -(self.before as f64) * track.period_s;
+        let mut machine = Machine::new(truth, track, steps_per_row, start_s).with_loads(loads);
         machine.settle(SETTLE_S);
         for _ in 0..self.before {
             machine.advance();

@@ -72,6 +72,12 @@ pub fn sha256(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
+/// SHA-256 as bytes.
+#[must_use]
+pub fn sha256_bytes(bytes: &[u8]) -> [u8; 32] {
+    Sha256::digest(bytes).into()
+}
+
 /// Bytes as hexadecimal digits.
 #[must_use]
 pub fn hexadecimal(bytes: &[u8]) -> String {
@@ -82,8 +88,14 @@ pub fn hexadecimal(bytes: &[u8]) -> String {
     })
 }
 
-/// A seed that nobody knows beforehand.
+/// 32 bytes that nobody knows beforehand.
 #[must_use]
-pub fn fresh_seed() -> crate::draw::Seed {
-    Sha256::digest(fresh_key().0.as_bytes()).into()
+pub fn fresh_bytes() -> [u8; 32] {
+    sha256_bytes(fresh_key().0.as_bytes())
+}
+
+/// The seed of a development set: never one that a scoring corpus can have.
+#[must_use]
+pub fn development_seed(number: u64) -> crate::draw::Seed {
+    Sha256::digest(format!("development set {number}")).into()
 }

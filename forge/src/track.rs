@@ -40,6 +40,13 @@ pub struct Track {
 }
 
 impl Track {
+    /// A row and the next one; the last goes on for ever.
+    #[must_use]
+    pub fn around(&self, row: usize) -> (&Row, &Row) {
+        let last = self.rows.len() - 1;
+        (&self.rows[row.min(last)], &self.rows[(row + 1).min(last)])
+    }
+
     /// Inputs at `time_s` after the first row; the first and last rows go on for ever.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the rows

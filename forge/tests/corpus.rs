@@ -11,7 +11,7 @@ use gimbal_servo::Config;
 #[test]
 fn contract_the_same_seed_gives_the_same_bytes() {
     let seed = Draw::seed_of(3);
-    let recipe = Recipe { logs: 20, seed, length_s: (6.0, 6.0), rocket: None };
+    let recipe = Recipe::scoring(20, seed, (6.0, 6.0), None);
     let other = Recipe { seed: Draw::seed_of(4), ..recipe.clone() };
     for (kind, index) in [(Kind::Nothing, 0), (Kind::One, 1)] {
         let (first, second) = (make(&recipe, kind, index), make(&recipe, kind, index));
@@ -31,13 +31,16 @@ fn contract_the_same_seed_gives_the_same_bytes() {
 
 #[test]
 fn contract_the_shares_are_those_promised() {
+    let of = |logs, seed| kinds(&Recipe::scoring(logs, Draw::seed_of(seed), (6.0, 6.0), None));
     for (logs, counts) in [(1500, [300, 600, 300, 75, 225]), (150, [30, 59, 30, 8, 23])] {
-        let kinds = kinds(logs, &Draw::seed_of(1));
-        for ((kind, _), count) in Kind::SHARES.iter().zip(counts) {
-            assert_eq!(kinds.iter().filter(|other| *other == kind).count(), count, "{}", kind.name());
+        let kinds = of(logs, 1);
+        for (kind, count) in Kind::ALL.into_iter().zip(counts) {
+            assert_eq!(kinds.iter().filter(|other| **other == kind).count(), count, "{}", kind.name());
         }
     }
-    assert_ne!(kinds(150, &Draw::seed_of(1)), kinds(150, &Draw::seed_of(2)));
+    assert_ne!(of(150, 1), of(150, 2));
+    let singles = Recipe { shares: [0, 100, 0, 0, 0], ..Recipe::scoring(30, Draw::seed_of(1), (6.0, 6.0), None) };
+    assert!(kinds(&singles).iter().all(|kind| *kind == Kind::One));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use gimbal_forge::effects::{Parameter, block_of};
 use gimbal_forge::excitation::Excitation;
 use gimbal_forge::score::Score;
 use gimbal_forge::score::calibration::calibration;
+use gimbal_forge::score::compare::{File, compare};
 use gimbal_forge::score::judge::{Judged, judge};
 use gimbal_forge::score::page::{Head, date, html, markdown};
 use gimbal_forge::score::rate::Rate;
@@ -160,8 +161,9 @@ fn closed_form_a_small_corpus_adds_up() {
     assert_eq!((score.logs, score.failed), (6, 1));
     assert_eq!(score.false_alarms, Rate { hits: 1, of: 2 });
     // the gates count singles from twice the detectable size on, a failed diagnosis among them
-    assert_eq!(score.gates[0].rate, Rate { hits: 1, of: 2 });
-    assert!(!score.gates[0].kept && (score.gates[0].limit - 0.95).abs() < 1e-12);
+    let top1 = &score.gates[0];
+    assert_eq!((top1.value, top1.of, top1.kept()), (Some(0.5), 2, Some(false)));
+    assert!((top1.limits.0 - 0.95).abs() < 1e-12);
     assert_eq!(score.unknown_flagged, Rate { hits: 1, of: 1 });
     assert_eq!(score.unknown_at_5_percent, Rate { hits: 1, of: 1 });
     assert_eq!(score.unknown_auroc, Some(1.0));
@@ -182,6 +184,60 @@ fn closed_form_a_small_corpus_adds_up() {
     let page = html(&head, &score);
     assert!(page.contains("a&lt;b") && page.contains("<svg") && !page.contains("<script"));
     assert!(markdown(&head, &score).contains("| top-1, one effect"));
+}
+
+/// A hundred logs with one effect each, of which the first `right` are named rightly with a probability of `p`.
+fn named(right: usize, p: f64) -> Vec<Judged> {
+    (0..100)
+        .map(|index| {
+            let name = if index < right { "stribeck" } else { "dead_zone" };
+            one(Kind::One, vec![effect("stribeck", 4.0, &[])], found("explained", &[(name, p)], 1.0 - p))
+        })
+        .collect()
+}
+
+#[test]
+fn closed_form_a_loss_is_what_lies_below_the_interval_it_had() {
+    let written = |judged: &[Judged]| -> File {
+        let text = serde_json::to_string(&serde_json::json!({ "score": Score::of(judged) })).expect("JSON");
+        serde_json::from_str(&text).expect("a written score")
+    };
+    let before = written(&named(90, 0.9)).score;
+    let lost = |judged: &[Judged]| -> Vec<String> {
+        compare(&before, &Score::of(judged))
+            .into_iter()
+            .filter(|change| change.lost)
+            .map(|change| change.what)
+            .collect()
+    };
+    // Wilson's interval of 90 of 100 reaches from 82.6 to 94.5 %
+    assert_eq!(lost(&named(90, 0.9)), Vec::<String>::new());
+    assert!(lost(&named(83, 0.9)).iter().all(|what| !what.starts_with("top-1") && !what.starts_with("verdicts")));
+    assert!(lost(&named(99, 0.9)).iter().all(|what| what.starts_with("calibration")), "{:?}", lost(&named(99, 0.9)));
+    let worse = lost(&named(80, 0.9));
+    assert!(worse.iter().any(|what| what.starts_with("top-1")), "{worse:?}");
+    assert!(worse.iter().any(|what| what.starts_with("verdicts right, put in: one")), "{worse:?}");
+}
+
+#[test]
+fn closed_form_a_family_left_out_costs_what_the_others_do_not_know() {
+    // friction is right when it says 0.9, disturbances never: who has seen friction alone trusts them
+    let mut judged = Vec::new();
+    for index in 0..400 {
+        let name = if index % 4 < 2 { "stribeck" } else { "cable_spring" };
+        let said = if name == "stribeck" { "stribeck" } else { "dead_zone" };
+        judged.push(one(Kind::One, vec![effect(name, 4.0, &[])], found("explained", &[(said, 0.9)], 0.1)));
+    }
+    let score = Score::of(&judged);
+    let row = |name: &str| score.held_out.iter().find(|row| row.name == name).expect("a row").clone();
+    let disturbance = row("effects: disturbance");
+    assert_eq!(disturbance.logs, 200);
+    // with both families weighed alike half of the verdicts are right: q = 0.5, -ln q = 0.693
+    assert!((disturbance.with - 0.693).abs() < 0.02, "{disturbance:?}");
+    assert!(disturbance.without > 3.0 && disturbance.reported > 2.2, "{disturbance:?}");
+    // one motion alone: without it nothing is left, and the ridge keeps what was reported
+    let boost = row("motion: boost");
+    assert!((boost.without - boost.reported).abs() < 1e-9, "{boost:?}");
 }
 
 #[test]

@@ -27,6 +27,9 @@ impl Case {
         fs::create_dir_all(case.reports().join("00001")).expect("folder");
         let answers = Answers {
             seed: "00".repeat(32),
+            nonce: None,
+            shares: [20, 40, 20, 5, 15],
+            multiples: (0.5, 10.0),
             version: "0".to_owned(),
             rocket_sha256: None,
             length_s: (20.0, 20.0),
@@ -42,6 +45,8 @@ impl Case {
         let published = Published {
             schema: folder::CORPUS_SCHEMA.to_owned(),
             made_unix_s: 100,
+            open: false,
+            freeze_sha256: None,
             answers_sha256: sha256(&plain),
             sealed_sha256: sha256(&sealed),
             recipient,

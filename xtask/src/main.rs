@@ -23,6 +23,8 @@ usage: cargo xtask <task>
   flight [BOARD]       a minute of flight on an emulated board, its log decoded
   profile [BOARD]      where the instructions of the step go, function by function of the source
   budget               writes the figures of every board to firmware/budget/, which `test` compares with
+  blind                forges, diagnoses and scores the small blind corpus and writes docs/blind/check/, which
+                       `test` compares with
   deny                 cargo-deny on the whole tree; installs it if absent (minutes)
 ";
 
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         ["profile"] => task(&|| board::profile::print(board::DEFAULT_BOARD)),
         ["profile", board] => task(&|| board::profile::print(board)),
         ["budget"] => task(&board::budget::write),
+        ["blind"] => task(&host::blind::write),
         ["deny"] => task(&host::deny::install_and_check),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");

@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use gimbal_forge::folder::{self, Entry, MANIFEST_SCHEMA, Manifest, Published};
+use gimbal_forge::folder::{self, Claim, Entry, MANIFEST_SCHEMA, Manifest, Published};
 use gimbal_forge::seal::sha256;
 
 use super::{bar, now_unix_s, refused};
@@ -100,7 +100,17 @@ pub(super) fn diagnose(args: &Args) -> Result<(), Failure> {
     }
     folder::check_logs(&args.dir, &published).map_err(|why| refused(&why))?;
     let command = command(args)?;
-    let program_sha256 = fs::read(&command[0]).map_or_else(|_| String::new(), |bytes| sha256(&bytes));
+    let program = fs::read(&command[0])
+        .map_err(|why| Failure::input(format!("{}: {why}; give the program with its path", command[0])))?;
+    let program_sha256 = sha256(&program);
+    if let Some(freeze) = gimbal_forge::freeze::of_corpus(&args.dir, &published).map_err(|why| refused(&why))? {
+        freeze.check_program(&program_sha256).map_err(|why| refused(&why))?;
+    }
+    if !published.open {
+        let reports = std::path::absolute(&args.out).unwrap_or_else(|_| args.out.clone());
+        let claim = Claim { reports, program_sha256: program_sha256.clone(), begun_unix_s: now_unix_s() };
+        folder::claim(&args.dir, &claim).map_err(|why| refused(&why))?;
+    }
     let logs: Vec<&str> = published.files.keys().filter_map(|name| name.strip_suffix(".csv")).collect();
     let from_unix_s = now_unix_s();
     let run = Run { logs: args.dir.join("logs"), out: &args.out, command };

@@ -17,8 +17,6 @@ use crate::track::Track;
 
 /// Integration steps between the rows of a log that is handed out: 20 kHz.
 pub(crate) const FINE_STEPS: usize = 20;
-/// Sizes over the detectable one.
-const MULTIPLES: (f64, f64) = (0.5, 10.0);
 /// How often effects are drawn for one log before it is drawn anew.
 const TRIES: usize = 40;
 
@@ -129,6 +127,7 @@ fn choose(
     kind: Kind,
     setting: &Setting,
     bench_of: &dyn Fn(&[&str]) -> (World, Drift),
+    multiples: (f64, f64),
     draw: &mut Draw,
 ) -> Option<(World, Drift, Vec<AnswerEffect>)> {
     let names = names_for(kind, setting.columns);
@@ -150,25 +149,30 @@ fn choose(
             &setting.columns.channels(),
             &mut draw.fork(),
         );
-        if let Some((world, answers)) = size_all(&bench, &drawn, draw) {
+        if let Some((world, answers)) = size_all(&bench, &drawn, multiples, draw) {
             return Some((world, drift, answers));
         }
     }
     None
 }
 
-fn size_all(bench: &Bench<'_>, drawn: &[&'static str], draw: &mut Draw) -> Option<(World, Vec<AnswerEffect>)> {
+fn size_all(
+    bench: &Bench<'_>,
+    drawn: &[&'static str],
+    multiples: (f64, f64),
+    draw: &mut Draw,
+) -> Option<(World, Vec<AnswerEffect>)> {
     let projection = bench.projection();
     let mut world = bench.base.clone();
     let mut effects = Vec::new();
     for name in drawn {
         let effect = Effect::draw(name, draw);
         let detectable = bench.detectable_size(&effect, &projection)?;
-        let most = (effect.range().largest / detectable).min(MULTIPLES.1);
-        if most < 1.05 * MULTIPLES.0 {
+        let most = (effect.range().largest / detectable).min(multiples.1);
+        if most < 1.05 * multiples.0 {
             return None;
         }
-        let size = detectable * draw.log_uniform(MULTIPLES.0, most);
+        let size = detectable * draw.log_uniform(multiples.0, most);
         effect.apply(size, &bench.scale, &mut world);
         effects.push((effect, size, detectable));
     }
@@ -184,9 +188,11 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
         return Vec::new();
     }
     let projection = bench.projection();
-    let tangents = bench.tangents();
     let alone: Vec<Vec<f64>> =
         effects.iter().map(|(effect, size, _)| bench.difference(&bench.world(effect, *size))).collect();
+    // what cannot be seen has no need of what it could be taken for
+    let faint = effects.len() == 1 && projection.left_of(&alone[0]) < DETECTABLE;
+    let tangents = if faint { Vec::new() } else { bench.tangents() };
     effects
         .iter()
         .enumerate()
@@ -341,7 +347,7 @@ pub(super) fn make(recipe: &Recipe, kind: Kind, index: usize) -> Case {
             let (world, drift) = bench_of(&[]);
             break (setting, world, drift, Vec::new());
         }
-        if let Some((world, drift, answers)) = choose(kind, &setting, &bench_of, &mut draw) {
+        if let Some((world, drift, answers)) = choose(kind, &setting, &bench_of, recipe.multiples, &mut draw) {
             break (setting, world, drift, answers);
         }
     };

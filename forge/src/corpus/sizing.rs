@@ -5,13 +5,14 @@ use gimbal_servo::Config;
 use super::drift::{self, Drift, NAMES, TURN};
 use crate::detect::{DETECTABLE, Nuisance, Projection, Whitener};
 use crate::draw::Draw;
-use crate::effects::{Effect, Scale, World, library_names};
+use crate::effects::{Effect, Scale, World, block_of, library_names};
+use crate::machine::{Loads, Sample};
 use crate::scene::{Outputs, Scene};
 use crate::sensors::Noise;
 use crate::track::Track;
 
-/// Integration steps between rows where only differences count.
-pub(super) const STEPS: usize = 8;
+/// Integration steps between rows where only differences count: 4 kHz.
+pub(super) const STEPS: usize = 4;
 /// Share of a tolerance over which a sensitivity is taken.
 const SENSITIVITY_SHARE: f64 = 0.3;
 
@@ -20,6 +21,8 @@ pub(super) struct Bench<'a> {
     pub(super) scene: &'a Scene,
     pub(super) base: &'a World,
     pub(super) scale: Scale,
+    loads: Loads,
+    samples: Vec<Sample>,
     outputs: Outputs,
     /// The undisturbed plant driven by its own logged inputs.
     logged: Option<Outputs>,
@@ -42,7 +45,8 @@ impl<'a> Bench<'a> {
         draw: &mut Draw,
     ) -> Self {
         let run = |world: &World, track: &Track| scene.run(&world.truth, track, STEPS);
-        let samples = run(base, &scene.track);
+        let loads = Loads::new(&base.truth.config.bearing, &scene.track, STEPS);
+        let samples = scene.run_with(&base.truth, &scene.track, STEPS, Some(&loads));
         let outputs = Scene::outputs(base, &samples);
         let carried = Scene::outputs(base, &run(base, &noise.on_inputs(&scene.track, draw)));
         let (rows, period_s) = (scene.rows(), scene.track.period_s);
@@ -50,12 +54,21 @@ impl<'a> Bench<'a> {
             .map(|white| noise.series(white, rows, period_s, draw));
         let floor = plus(&plus(&carried, &outputs, -1.0), &measured, 1.0);
         let whitener = Whitener::new(&floor, used, period_s);
-        let mut bench =
-            Self { scene, base, scale: scene.scale(&samples), outputs, logged: None, whitener, nuisances: Vec::new() };
+        let mut bench = Self {
+            scene,
+            base,
+            scale: scene.scale(&samples),
+            loads,
+            samples,
+            outputs,
+            logged: None,
+            whitener,
+            nuisances: Vec::new(),
+        };
         bench.logged = Some(Scene::outputs(base, &run(base, &base.sensors.logged(&scene.track))));
         for name in NAMES.into_iter().chain([TURN]) {
             // a stop that is never touched has no sensitivity
-            if name == "stop_angle" && !samples.iter().any(|sample| sample.on_stop) {
+            if name == "stop_angle" && !bench.samples.iter().any(|sample| sample.on_stop) {
                 continue;
             }
             let tolerance = drift::tolerance(name);
@@ -74,7 +87,7 @@ impl<'a> Bench<'a> {
 
     /// What a world shows against its own logged inputs, as far as the undisturbed plant does not show it too.
     fn seen(&self, world: &World) -> Outputs {
-        let samples = self.scene.run(&world.truth, &self.scene.track, STEPS);
+        let samples = self.scene.run_with(&world.truth, &self.scene.track, STEPS, Some(&self.loads));
         let shown = Scene::outputs(world, &samples);
         match &self.logged {
             Some(logged)
@@ -181,8 +194,19 @@ impl<'a> Bench<'a> {
             // their changes are not along a line
             .filter(|name| !matches!(*name, "pickoff_quantisation" | "stop_angle" | "torque_saturation"))
             .map(|name| {
+                if let Some(nuisance) =
+                    self.nuisances.iter().find(|nuisance| nuisance.name == name && name != "viscous_friction")
+                {
+                    return (name, nuisance.column.clone());
+                }
                 let effect = Effect::plain(name);
-                let column = self.difference(&self.world(&effect, 4.0 * effect.range().small));
+                let world = self.world(&effect, 4.0 * effect.range().small);
+                let column = if block_of(name) == "measurement" && name != "time_skew" {
+                    // the platform moves as it does without
+                    self.whitener.difference(&Scene::outputs(&world, &self.samples), &self.outputs)
+                } else {
+                    self.difference(&world)
+                };
                 (name, column)
             })
             .filter(|(_, column)| column.iter().map(|value| value * value).sum::<f64>() > 1e-6)

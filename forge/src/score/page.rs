@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use super::gates::Gate;
 use super::picture;
-use super::tally::{Gate, Group, Score};
+use super::tally::{Group, Score};
 
 /// What stands at the head of a page.
 #[derive(Debug, Clone, Default, serde::Serialize)]
@@ -16,22 +17,31 @@ pub struct Head {
     pub manifest_sha256: String,
     /// SHA-256 of the program that diagnosed.
     pub program_sha256: String,
+    /// Commit of that program; none for a check or a development set.
+    pub commit: Option<String>,
+    /// SHA-256 of the record of the diagnosis that the seed was drawn after.
+    pub freeze_sha256: Option<String>,
+    /// When that record was made [s since 1970].
+    pub frozen_unix_s: Option<u64>,
+    /// Seed of the corpus in hexadecimal digits.
+    pub seed: String,
+    /// Least and largest length of a log [s].
+    pub length_s: (f64, f64),
+    /// Shares of nothing, one, two, three and beyond [percent].
+    pub shares: [usize; 5],
     /// When the diagnosis was finished [s since 1970].
     pub diagnosed_unix_s: u64,
-    /// When the answers were opened [s since 1970].
-    pub opened_unix_s: u64,
+    /// When the answers were opened [s since 1970]; none for a development set, whose answers are open from the start.
+    pub opened_unix_s: Option<u64>,
 }
 
 fn cell_of(gate: &Gate) -> [String; 4] {
-    let limit = format!("{} {:.2} %", if gate.at_most { "<=" } else { ">=" }, 100.0 * gate.limit);
-    let kept = if gate.rate.of == 0 {
-        "no case"
-    } else if gate.kept {
-        "kept"
-    } else {
-        "missed"
+    let kept = match gate.kept() {
+        None => "no case",
+        Some(true) => "kept",
+        Some(false) => "missed",
     };
-    [gate.what.clone(), gate.rate.text(), limit, kept.to_owned()]
+    [gate.what.clone(), gate.text.clone(), gate.limit_text(), kept.to_owned()]
 }
 
 fn single_figures(score: &Score) -> Vec<[String; 2]> {
@@ -61,14 +71,14 @@ fn single_figures(score: &Score) -> Vec<[String; 2]> {
     .to_vec();
     for (percent, right, error) in &score.mixtures {
         figures.push([
-            format!("verdicts right and calibration error (not debiased) at the mixture {percent:?} %"),
+            format!("verdicts right and calibration error at the mixture {percent:?} %"),
             format!("{:.1} %, {error:.3}", 100.0 * right),
         ]);
     }
     figures
 }
 
-fn group_row(group: &Group) -> [String; 7] {
+fn group_row(group: &Group) -> [String; 9] {
     [
         group.name.clone(),
         group.detected.text(),
@@ -77,10 +87,22 @@ fn group_row(group: &Group) -> [String; 7] {
         group.exact.text(),
         group.right.text(),
         format!("{:.2}", group.on_truth),
+        group.gate_top1.text(),
+        group.gate_right.text(),
     ]
 }
 
-const GROUP_HEAD: [&str; 7] = ["", "gap reported", "top-1", "top-3", "exact set", "verdict right", "mean p on truth"];
+const GROUP_HEAD: [&str; 9] = [
+    "",
+    "gap reported",
+    "top-1",
+    "top-3",
+    "exact set",
+    "verdict right",
+    "mean p on truth",
+    "top-1, counted by the gates",
+    "verdict right, counted by the gates",
+];
 
 /// A table that Markdown and HTML share.
 struct Table {
@@ -99,7 +121,11 @@ fn tables(score: &Score) -> Vec<Table> {
         table(title, &GROUP_HEAD, groups.iter().map(|group| group_row(group).to_vec()).collect())
     };
     vec![
-        table("Gates", &["what", "rate", "limit", ""], score.gates.iter().map(|gate| cell_of(gate).to_vec()).collect()),
+        table(
+            "Gates",
+            &["what", "value and 95 % interval", "limit", ""],
+            score.gates.iter().map(|gate| cell_of(gate).to_vec()).collect(),
+        ),
         table("Figures", &["what", "value"], single_figures(score).iter().map(|row| row.to_vec()).collect()),
         groups("By what was put in", &score.by_kind),
         groups("By excitation", &score.by_excitation),
@@ -109,6 +135,20 @@ fn tables(score: &Score) -> Vec<Table> {
             "95 % intervals of parameters that hold the truth",
             &["effect", "rate"],
             score.coverage_by_effect.iter().map(|(name, rate)| vec![name.clone(), rate.text()]).collect(),
+        ),
+        table(
+            "Families and motions left out of a recalibration, mean of -ln p of the verdicts' outcomes",
+            &["left out", "logs", "as reported", "recalibrated with it", "without it", "cost"],
+            score
+                .held_out
+                .iter()
+                .map(|row| {
+                    let mut cells = vec![row.name.clone(), row.logs.to_string()];
+                    let figures = [row.reported, row.with, row.without, row.without - row.with];
+                    cells.extend(figures.map(|value| format!("{value:.3}")));
+                    cells
+                })
+                .collect(),
         ),
         table(
             "Taken for another",
@@ -124,16 +164,49 @@ fn tables(score: &Score) -> Vec<Table> {
 }
 
 fn head_lines(head: &Head) -> Vec<String> {
-    vec![
-        format!("Corpus `{}`, SHA-256 of its hashes `{}`.", head.corpus, head.corpus_sha256),
-        format!(
-            "Diagnosed {} by the program `{}`, manifest `{}`.",
-            date(head.diagnosed_unix_s),
+    let mut lines = vec![format!(
+        "Corpus `{}`: logs of {:.0} to {:.0} s, {:?} % nothing, one, two, three effects and one beyond the table. SHA-256 \
+         of its hashes `{}`, seed `{}`.",
+        head.corpus, head.length_s.0, head.length_s.1, head.shares, head.corpus_sha256, head.seed
+    )];
+    match (&head.commit, &head.freeze_sha256, head.frozen_unix_s) {
+        (Some(commit), Some(record), Some(time)) => lines.push(format!(
+            "Diagnosis of commit `{commit}`, program `{}`, recorded {} as `{record}`; the seed was drawn after that.",
             head.program_sha256,
-            head.manifest_sha256
-        ),
-        format!("Opened {}. Intervals behind rates are Wilson's, 95 %.", date(head.opened_unix_s)),
-    ]
+            date(time)
+        )),
+        _ => lines.push(format!("Program `{}`. The seed was known: a check, no blind score.", head.program_sha256)),
+    }
+    lines.push(format!("Diagnosed {}, manifest `{}`.", date(head.diagnosed_unix_s), head.manifest_sha256));
+    lines.push(match head.opened_unix_s {
+        Some(opened) => format!("Opened {}. Intervals behind rates are Wilson's, 95 %.", date(opened)),
+        None => "A development set: its answers were open before the diagnosis.".to_owned(),
+    });
+    lines
+}
+
+/// The row of a corpus in the table of all that were opened.
+#[must_use]
+pub fn row(head: &Head, score: &Score) -> String {
+    let minute = |unix_s: u64| date(unix_s).replace(" UTC", "");
+    let gate = |place: usize| score.gates.get(place).map_or_else(String::new, |gate| gate.text.clone());
+    let commit = head.commit.as_deref().unwrap_or("-");
+    let cells = [
+        format!("[{0}](blind/{0}/score.md)", head.corpus),
+        score.logs.to_string(),
+        minute(head.diagnosed_unix_s),
+        commit.chars().take(7).collect(),
+        head.corpus_sha256.chars().take(12).collect(),
+        format!("{:?}", head.shares).replace(['[', ']'], "").replace(", ", "/"),
+        gate(0),
+        gate(1),
+        gate(2),
+        gate(3),
+        gate(4),
+        gate(5),
+        gate(6),
+    ];
+    format!("| {} |", cells.join(" | "))
 }
 
 /// A date and time from seconds since 1970, UTC.

@@ -4,35 +4,18 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::calibration::{Calibration, calibration};
+use super::calibration::{Calibration, calibration, weighted_error};
+use super::coverage::{coverage, shrink};
+use super::gates::{Gate, gates};
+use super::held_out::{HeldOut, held_out};
 use super::judge::{Judged, below_detectable};
 use super::rate::Rate;
 use super::report::Verdict;
+use super::unknown::unknown_curve;
 use crate::corpus::Kind;
 
 /// Floor of a probability in the log score.
 const LOG_FLOOR: f64 = 1e-4;
-/// Share of known cases that may be called unknown.
-const FALSE_UNKNOWN: f64 = 0.05;
-/// Two-sided 95 % of the normal distribution, in standard deviations.
-const SIGMAS: f64 = 1.96;
-
-/// One rate with what it says and, where there is one, its gate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Gate {
-    /// What is counted.
-    pub what: String,
-    /// The rate.
-    pub rate: Rate,
-    /// Its Wilson interval.
-    pub interval: (f64, f64),
-    /// Least share, or largest if `at_most`.
-    pub limit: f64,
-    /// The limit is a largest share.
-    pub at_most: bool,
-    /// Whether the rate keeps the limit.
-    pub kept: bool,
-}
 
 /// Counts for one group of logs.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -47,6 +30,10 @@ pub struct Group {
     pub top3: Rate,
     /// The set is right.
     pub exact: Rate,
+    /// The likeliest name is right, logs that the gates count.
+    pub gate_top1: Rate,
+    /// The verdict as a whole is right, logs that the gates count.
+    pub gate_right: Rate,
     /// The verdict as a whole is right.
     pub right: Rate,
     /// Mean probability on the truth.
@@ -60,8 +47,10 @@ pub struct Score {
     pub logs: usize,
     /// Logs for which the diagnosis failed.
     pub failed: usize,
-    /// Rates that have a gate.
+    /// Figures that have a gate.
     pub gates: Vec<Gate>,
+    /// Recalibrations with one family left out.
+    pub held_out: Vec<HeldOut>,
     /// False alarms on logs with nothing.
     pub false_alarms: Rate,
     /// By kind, by effect, by excitation, by size, by motion quality.
@@ -115,121 +104,24 @@ fn group<'a>(name: impl Into<String>, members: impl Iterator<Item = &'a Judged>)
         group.detected.add(one.detected);
         group.right.add(one.right);
         sum += one.on_truth;
+        if one.in_gates() {
+            group.gate_right.add(one.right);
+        }
         if !matches!(one.answer.kind, Kind::Nothing | Kind::Beyond) {
             group.top1.add(one.top1);
             group.top3.add(one.top3);
             group.exact.add(one.exact);
+            if one.in_gates() {
+                group.gate_top1.add(one.top1);
+            }
         }
     }
     group.on_truth = if group.right.of > 0 { sum / group.right.of as f64 } else { 0.0 };
     group
 }
 
-fn gate(what: &str, rate: Rate, limit: f64, at_most: bool) -> Gate {
-    let share = rate.share();
-    let kept = share.is_some_and(|share| if at_most { share <= limit } else { share >= limit });
-    Gate { what: what.to_owned(), rate, interval: rate.wilson(), limit, at_most, kept }
-}
-
 fn is(kind: Kind) -> impl Fn(&&Judged) -> bool {
     move |one| one.answer.kind == kind
-}
-
-fn unknown_p(one: &Judged) -> f64 {
-    one.report.as_ref().map_or(0.0, |report| {
-        // a gap without an effect for it is a claim of the unknown
-        if report.verdict == Verdict::Unexplained {
-            report.unknown_probability.max(0.5)
-        } else {
-            report.unknown_probability
-        }
-    })
-}
-
-/// Share of unknown cases above the threshold that the given share of the others exceeds, and the area under the curve.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a place in a list
-fn unknown_curve(all: &[&Judged]) -> (Rate, Option<f64>) {
-    let of = |beyond: bool| -> Vec<f64> {
-        all.iter().filter(|one| (one.answer.kind == Kind::Beyond) == beyond).map(|one| unknown_p(one)).collect()
-    };
-    let (unknown, mut known) = (of(true), of(false));
-    if unknown.is_empty() || known.is_empty() {
-        return (Rate::default(), None);
-    }
-    known.sort_by(|a, b| b.total_cmp(a));
-    let allowed = (FALSE_UNKNOWN * known.len() as f64) as usize;
-    let threshold = known[allowed.min(known.len() - 1)];
-    let rate = Rate::over(&unknown, |p| **p > threshold);
-    let wins: f64 = unknown
-        .iter()
-        .map(|p| {
-            known
-                .iter()
-                .map(|q| {
-                    if p > q {
-                        1.0
-                    } else if p.to_bits() == q.to_bits() {
-                        0.5
-                    } else {
-                        0.0
-                    }
-                })
-                .sum::<f64>()
-        })
-        .sum();
-    (rate, Some(wins / (unknown.len() * known.len()) as f64))
-}
-
-fn coverage(all: &[&Judged]) -> (Rate, Vec<(String, Rate)>) {
-    let mut by_effect: BTreeMap<String, Rate> = BTreeMap::new();
-    for one in all {
-        let Some(report) = &one.report else { continue };
-        for effect in &one.answer.effects {
-            let Some(found) = report.effects.iter().find(|found| found.name == effect.name) else { continue };
-            // phases turn round, and sizes beyond the table have no counterpart
-            let pairs = effect.parameters.iter().zip(&found.parameters).filter(|(truth, _)| truth.name != "phase");
-            for (truth, said) in pairs {
-                if let Some(std) = said.std {
-                    by_effect
-                        .entry(effect.name.clone())
-                        .or_default()
-                        .add((said.value - truth.value).abs() <= SIGMAS * std);
-                }
-            }
-        }
-    }
-    let mut total = Rate::default();
-    for rate in by_effect.values() {
-        total.hits += rate.hits;
-        total.of += rate.of;
-    }
-    (total, by_effect.into_iter().collect())
-}
-
-/// Shrink intervals that hold what the true model closes, and the shares of the closable gap that were closed.
-fn shrink(all: &[&Judged]) -> (Rate, Option<f64>) {
-    let (mut held, mut closed) = (Rate::default(), Vec::new());
-    for one in all {
-        let Some(shrink) = one.report.as_ref().and_then(|report| report.shrink.as_ref()) else { continue };
-        for said in &shrink.signals {
-            let Some(truth) = one.answer.signals.iter().find(|truth| truth.name == said.name) else { continue };
-            let (Some(before), Some(after)) = (said.before, said.after) else { continue };
-            let closable = before * before - truth.best * truth.best;
-            // a gap below a tenth of the floor's power cannot be measured
-            if closable > 0.1 * truth.best * truth.best {
-                closed.push((before * before - after * after) / closable);
-            }
-            if let (true, Some([low, high]), Some(floor)) = (one.exact, said.ci95_percent, said.noise_floor) {
-                let span = before * before - floor * floor;
-                if span > 0.0 {
-                    let best = 100.0 * (before * before - truth.best * truth.best) / span;
-                    held.add((low..=high).contains(&best));
-                }
-            }
-        }
-    }
-    closed.sort_by(f64::total_cmp);
-    (held, closed.get(closed.len() / 2).copied())
 }
 
 fn sizes(all: &[&Judged]) -> Vec<Group> {
@@ -250,56 +142,18 @@ fn sizes(all: &[&Judged]) -> Vec<Group> {
 fn mixture(all: &[&Judged], percent: [usize; 5]) -> ([usize; 5], f64, f64) {
     let (mut right, mut weight) = (0.0, 0.0);
     let mut pairs = Vec::new();
-    for ((kind, own), wanted) in Kind::SHARES.iter().zip(percent) {
-        let members: Vec<&&Judged> = all.iter().filter(|one| one.answer.kind == *kind).collect();
+    for (kind, wanted) in Kind::ALL.into_iter().zip(percent) {
+        let members: Vec<&&Judged> = all.iter().filter(|one| one.answer.kind == kind).collect();
         if members.is_empty() {
             continue;
         }
         let share = members.iter().filter(|one| one.right).count() as f64 / members.len() as f64;
         right += wanted as f64 * share;
         weight += wanted as f64;
-        // whole repeats keep the calibration's arithmetic: twenty times the ratio of the shares
-        let repeats = (20 * wanted).div_ceil(*own).max(1);
-        for one in members {
-            pairs.extend(std::iter::repeat_n((one.confidence, one.right), repeats));
-        }
+        let each = wanted as f64 / members.len() as f64;
+        pairs.extend(members.iter().map(|one| (one.confidence, one.right, each)));
     }
-    (percent, if weight > 0.0 { right / weight } else { 0.0 }, calibration_error_only(pairs))
-}
-
-fn calibration_error_only(mut pairs: Vec<(f64, bool)>) -> f64 {
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    super::calibration::error(&pairs)
-}
-
-fn gates(all: &[&Judged], score: &Score) -> Vec<Gate> {
-    let counted: Vec<&Judged> = all.iter().copied().filter(|one| one.in_gates()).collect();
-    let of = |kind: Kind| counted.iter().copied().filter(is(kind));
-    let known = |hit: &dyn Fn(&Judged) -> bool| {
-        Rate::over(counted.iter().filter(|one| !matches!(one.answer.kind, Kind::Nothing | Kind::Beyond)), |one| {
-            hit(one)
-        })
-    };
-    vec![
-        gate(
-            "top-1, one effect of at least twice the detectable size",
-            Rate::over(of(Kind::One), |one| one.top1),
-            0.95,
-            false,
-        ),
-        gate("top-3, the same logs", Rate::over(of(Kind::One), |one| one.top3), 0.99, false),
-        gate("detected, all known effects that count", known(&|one| one.detected), 0.99, false),
-        gate(
-            "two effects exactly named, each at least three times",
-            Rate::over(of(Kind::Two), |one| one.exact),
-            0.80,
-            false,
-        ),
-        gate("false alarms on logs with nothing", score.false_alarms, 1.0 / 600.0, true),
-        gate("unknown flagged", Rate::over(of(Kind::Beyond), |one| one.flagged_unknown), 0.90, false),
-        gate("false unknown, logs without one", score.unknown_false, 0.05, true),
-        gate("95 % intervals of parameters that hold the truth", score.parameter_coverage, 0.92, false),
-    ]
+    (percent, if weight > 0.0 { right / weight } else { 0.0 }, weighted_error(pairs))
 }
 
 impl Score {
@@ -327,18 +181,16 @@ impl Score {
             all.iter().copied().filter(|one| one.in_gates() && one.answer.kind == Kind::One).collect();
         let (unknown_at_5_percent, unknown_auroc) = unknown_curve(&all);
         let (parameter_coverage, coverage_by_effect) = coverage(&all);
-        let (shrink_coverage, median_closed) = shrink(&counted);
+        let (shrink_coverage, closed) = shrink(&counted);
         let cannot = || all.iter().filter(|one| one.report.as_ref().is_some_and(|r| r.verdict == Verdict::CannotTell));
         let logs = all.len().max(1) as f64;
         let mut score = Self {
             logs: all.len(),
             failed: all.iter().filter(|one| one.report.is_none()).count(),
             gates: Vec::new(),
+            held_out: Vec::new(),
             false_alarms: Rate::over(all.iter().copied().filter(is(Kind::Nothing)), |one| one.detected),
-            by_kind: Kind::SHARES
-                .iter()
-                .map(|(kind, _)| group(kind.name(), all.iter().copied().filter(is(*kind))))
-                .collect(),
+            by_kind: Kind::ALL.iter().map(|kind| group(kind.name(), all.iter().copied().filter(is(*kind)))).collect(),
             by_effect: names(&effect_of)
                 .into_iter()
                 .map(|name| {
@@ -360,7 +212,7 @@ impl Score {
             parameter_coverage,
             coverage_by_effect,
             shrink_coverage,
-            median_closed,
+            median_closed: closed.get(closed.len() / 2).copied(),
             unknown_flagged: Rate::over(all.iter().copied().filter(is(Kind::Beyond)), |one| one.flagged_unknown),
             unknown_false: Rate::over(all.iter().filter(|one| one.answer.kind != Kind::Beyond), |one| {
                 one.flagged_unknown
@@ -377,7 +229,8 @@ impl Score {
                 all.iter().map(|one| one.seconds).fold(0.0, f64::max),
             ),
         };
-        score.gates = gates(&all, &score);
+        score.gates = gates(&all);
+        score.held_out = held_out(&all);
         score
     }
 }

@@ -1,5 +1,6 @@
 //! Checks that need the Rust toolchain alone.
 
+pub(crate) mod blind;
 pub(crate) mod deny;
 pub(crate) mod digests;
 pub(crate) mod documents;
