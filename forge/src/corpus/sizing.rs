@@ -21,6 +21,8 @@ pub(super) struct Bench<'a> {
     pub(super) scene: &'a Scene,
     pub(super) base: &'a World,
     pub(super) scale: Scale,
+    /// Integration steps between rows.
+    steps: usize,
     loads: Loads,
     samples: Vec<Sample>,
     outputs: Outputs,
@@ -44,9 +46,23 @@ impl<'a> Bench<'a> {
         used: &[usize],
         draw: &mut Draw,
     ) -> Self {
-        let run = |world: &World, track: &Track| scene.run(&world.truth, track, STEPS);
-        let loads = Loads::new(&base.truth.config.bearing, &scene.track, STEPS);
-        let samples = scene.run_with(&base.truth, &scene.track, STEPS, Some(&loads));
+        Self::with_steps(scene, base, nominal, drift, noise, used, draw, STEPS)
+    }
+
+    #[allow(clippy::too_many_arguments)] // what a log is made of, and how finely
+    fn with_steps(
+        scene: &'a Scene,
+        base: &'a World,
+        nominal: &Config,
+        drift: &Drift,
+        noise: &Noise,
+        used: &[usize],
+        draw: &mut Draw,
+        steps: usize,
+    ) -> Self {
+        let run = |world: &World, track: &Track| scene.run(&world.truth, track, steps);
+        let loads = Loads::new(&base.truth.config.bearing, &scene.track, steps);
+        let samples = scene.run_with(&base.truth, &scene.track, steps, Some(&loads));
         let outputs = Scene::outputs(base, &samples);
         let carried = Scene::outputs(base, &run(base, &noise.on_inputs(&scene.track, draw)));
         let (rows, period_s) = (scene.rows(), scene.track.period_s);
@@ -58,6 +74,7 @@ impl<'a> Bench<'a> {
             scene,
             base,
             scale: scene.scale(&samples),
+            steps,
             loads,
             samples,
             outputs,
@@ -87,7 +104,7 @@ impl<'a> Bench<'a> {
 
     /// What a world shows against its own logged inputs, as far as the undisturbed plant does not show it too.
     fn seen(&self, world: &World) -> Outputs {
-        let samples = self.scene.run_with(&world.truth, &self.scene.track, STEPS, Some(&self.loads));
+        let samples = self.scene.run_with(&world.truth, &self.scene.track, self.steps, Some(&self.loads));
         let shown = Scene::outputs(world, &samples);
         match &self.logged {
             Some(logged)
@@ -96,7 +113,7 @@ impl<'a> Bench<'a> {
                         != self.base.sensors.misalignment_rad[2].to_bits() =>
             {
                 let track = world.sensors.logged(&self.scene.track);
-                let other = Scene::outputs(self.base, &self.scene.run(&self.base.truth, &track, STEPS));
+                let other = Scene::outputs(self.base, &self.scene.run(&self.base.truth, &track, self.steps));
                 plus(&shown, &plus(&other, logged, -1.0), -1.0)
             }
             _ => shown,
@@ -211,5 +228,36 @@ impl<'a> Bench<'a> {
             })
             .filter(|(_, column)| column.iter().map(|value| value * value).sum::<f64>() > 1e-6)
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::excitation::Excitation;
+
+    #[test]
+    fn cross_sizes_are_those_of_the_steps_of_the_logs() {
+        let mut draw = Draw::new(&Draw::seed_of(31), 0);
+        let scene = Scene { track: Excitation::Manoeuvre.track(8000, None, &mut draw), before: 0 };
+        let nominal = Config::consistent();
+        let drift = Drift::draw(&mut draw, &[]);
+        let (base, noise) = (drift.world(&nominal), Noise::draw(&mut draw));
+        let sizes = |steps: usize| -> Vec<f64> {
+            let mut own = draw.clone();
+            let bench = Bench::with_steps(&scene, &base, &nominal, &drift, &noise, &[0, 1], &mut own, steps);
+            let projection = bench.projection();
+            // the fastest parts: two masses, a delay, pre-sliding, a dead zone; and a slow one
+            ["flexible_mode", "loop_delay", "presliding", "dead_zone", "cable_spring"]
+                .iter()
+                .filter_map(|name| bench.detectable_size(&Effect::plain(name), &projection))
+                .collect()
+        };
+        let (coarse, fine) = (sizes(STEPS), sizes(crate::corpus::case::FINE_STEPS));
+        println!("{coarse:?}\n{fine:?}");
+        assert_eq!(coarse.len(), 5);
+        for (a, b) in coarse.iter().zip(&fine) {
+            assert!((a / b - 1.0).abs() < 0.03, "{a} {b}");
+        }
     }
 }
