@@ -249,7 +249,7 @@ fn escaped(text: &str) -> String {
 }
 
 const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;margin:2rem auto;max-width:72rem;padding:0 1rem;\
-color:#1b1f24;background:#fff}table{border-collapse:collapse;margin:.6rem 0}td,th{padding:.2rem .7rem;border-bottom:\
+color:#1b1f24;background:#fff}table{border-collapse:collapse;margin:.6rem 0}td{white-space:nowrap}td,th{padding:.2rem .7rem;border-bottom:\
 1px solid #d5dae0;text-align:left;font-variant-numeric:tabular-nums}svg text{font-size:11px;fill:currentColor}.frame{\
 fill:none;stroke:#8a929c}.ideal{stroke:#8a929c;stroke-dasharray:4 4}.dot{fill:#1f6feb}.hit{fill:#1f6feb}.miss{fill:\
 #c2410c}.wide{overflow-x:auto}@media(prefers-color-scheme:dark){body{color:#e3e6ea;background:#14171a}td,th{\
