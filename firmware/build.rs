@@ -110,7 +110,7 @@ fn write_vectors(out: &Path) -> Result<(), Box<dyn Error>> {
 /// Link arguments for every program of this package.
 fn link(out: &Path, target: &str, board: &Board) -> Result<(), Box<dyn Error>> {
     if board.default {
-        println!("cargo:rustc-link-arg-bins=-Tlink.x");
+        println!("cargo:rustc-link-arg=-Tlink.x");
     } else if target.starts_with("thumb") {
         let template = fs::read_to_string(runtime_script(out)?)?;
         if template.matches("INCLUDE memory.x").count() != 1 {
@@ -118,12 +118,12 @@ fn link(out: &Path, target: &str, board: &Board) -> Result<(), Box<dyn Error>> {
         }
         let path = out.join("board-link.x");
         fs::write(&path, template.replace("INCLUDE memory.x", &memory(board)))?;
-        println!("cargo:rustc-link-arg-bins=-T{}", path.display());
+        println!("cargo:rustc-link-arg=-T{}", path.display());
     } else {
         let path = out.join("board-memory.x");
         fs::write(&path, memory(board) + RISCV_REGIONS)?;
-        println!("cargo:rustc-link-arg-bins=-T{}", path.display());
-        println!("cargo:rustc-link-arg-bins=-Tlink.x");
+        println!("cargo:rustc-link-arg=-T{}", path.display());
+        println!("cargo:rustc-link-arg=-Tlink.x");
     }
     if env::var_os("CARGO_FEATURE_DEFMT").is_some() {
         println!("cargo:rustc-link-arg-bin=flight=-Tdefmt.x");
@@ -131,7 +131,7 @@ fn link(out: &Path, target: &str, board: &Board) -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-env=DEFMT_LOG=info");
     }
     // Sections need not start on a page of the host.
-    println!("cargo:rustc-link-arg-bins=--nmagic");
+    println!("cargo:rustc-link-arg=--nmagic");
     Ok(())
 }
 

@@ -33,6 +33,24 @@ pub const STOPS: Case = Case { name: "stops", config: Config::consistent, row: s
 /// The recorded flight six times over: a minute for the program `flight`.
 pub const MINUTE: Case = Case { name: "minute", config: Config::consistent, row: minute_row, steps: 60_000 };
 
+/// Makes a `main` for the host that prints what the examples of the 1 kHz call must print on a board.
+#[macro_export]
+macro_rules! flight_on_host {
+    () => {
+        #[cfg(not(target_os = "none"))]
+        fn main() {
+            let flight = $crate::cases::FLIGHT;
+            println!("tick f32 {} steps {:016x}", flight.steps, flight.output_digest::<f32>());
+        }
+        #[cfg(target_os = "none")]
+        $crate::program!(elsewhere);
+        #[cfg(target_os = "none")]
+        fn elsewhere() -> Result<(), &'static str> {
+            Err("the examples of the 1 kHz call run on Cortex-M alone")
+        }
+    };
+}
+
 fn minute_row(k: u32) -> Input<f64> {
     flight_row(k % FLIGHT.steps)
 }

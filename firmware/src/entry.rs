@@ -16,6 +16,14 @@ macro_rules! program {
             }
         }
 
+        $crate::panic_handler!();
+    };
+}
+
+/// A panic is printed and becomes exit status 1.
+#[macro_export]
+macro_rules! panic_handler {
+    () => {
         #[panic_handler]
         fn panic(info: &core::panic::PanicInfo) -> ! {
             $crate::entry::tell(info);

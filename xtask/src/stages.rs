@@ -48,6 +48,7 @@ impl Stages {
             Stage { name: "target-digests", run: board::digests::check },
             Stage { name: "target-flight", run: board::flight::check },
             Stage { name: "target-log", run: board::log::check },
+            Stage { name: "target-examples", run: board::examples::check },
             Stage { name: "target-gates", run: board::gates::check },
             Stage { name: "target-stack", run: board::stack::check },
             Stage { name: "target-budget", run: board::budget::check },

@@ -40,6 +40,16 @@ pub(crate) fn flight_with(board: &Board, feature: &str) -> Result<PathBuf> {
     Ok(disturbed)
 }
 
+/// An example of the firmware, with the feature that it needs.
+pub(crate) fn example(board: &Board, name: &str, feature: Option<&str>) -> Result<PathBuf> {
+    let toolchain = Toolchain::ready(&board.target)?;
+    let words = format!("build --quiet --release --package gimbal-firmware --example {name}");
+    let mut command = toolchain.cargo(&words, &board.target);
+    command.args(feature.iter().flat_map(|feature| ["--features", feature]));
+    capture(command.env("GIMBAL_BOARD", &board.name)).with_context(|| format!("board {}", board.name))?;
+    Ok(toolchain.target_dir().join(&board.target).join("release/examples").join(name))
+}
+
 /// The program `step` with the compiler's record of its stack frames.
 pub(crate) fn step_with_stack_sizes(board: &Board) -> Result<PathBuf> {
     let toolchain = Toolchain::ready(&board.target)?;

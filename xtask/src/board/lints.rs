@@ -18,9 +18,10 @@ pub(crate) fn check() -> Result<Note> {
             .cargo("clippy --quiet --release --package gimbal-firmware", target)
             .args(["--", "-D", "warnings"]))?;
         if target.starts_with("thumbv7em") {
-            run(toolchain
-                .cargo("clippy --quiet --release --package gimbal-firmware --features defmt", target)
-                .args(["--", "-D", "warnings"]))?;
+            let words = "clippy --quiet --release --package gimbal-firmware --bins --examples --features";
+            for features in ["defmt", "rtic", "embassy"] {
+                run(toolchain.cargo(words, target).args([features, "--", "-D", "warnings"]))?;
+            }
         }
     }
     Ok(Note::new())

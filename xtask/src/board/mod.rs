@@ -7,6 +7,7 @@ pub(crate) mod calibration;
 pub(crate) mod cost;
 pub(crate) mod digests;
 mod emulator;
+pub(crate) mod examples;
 pub(crate) mod flight;
 pub(crate) mod gates;
 mod image;
