@@ -21,6 +21,7 @@ usage: cargo xtask <task>
   cost [--target BOARD] [--json]
                        instructions, flash, state and stack of the step on an emulated board
   flight [BOARD]       a minute of flight on an emulated board, its log decoded
+  header               writes c/include/gimbal_servo.h
   profile [BOARD]      where the instructions of the step go, function by function of the source
   budget               writes the figures of every board to firmware/budget/, which `test` compares with
   blind                forges, diagnoses and scores the small blind corpus and writes docs/blind/check/, which
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         ["cost", rest @ ..] => cost(rest),
         ["flight"] => task(&|| board::log::print(board::DEFAULT_BOARD)),
         ["flight", board] => task(&|| board::log::print(board)),
+        ["header"] => task(&board::c::write_header),
         ["profile"] => task(&|| board::profile::print(board::DEFAULT_BOARD)),
         ["profile", board] => task(&|| board::profile::print(board)),
         ["budget"] => task(&board::budget::write),

@@ -3,6 +3,7 @@
 pub(crate) mod addresses;
 mod boards;
 pub(crate) mod budget;
+pub(crate) mod c;
 pub(crate) mod calibration;
 pub(crate) mod cost;
 pub(crate) mod digests;
