@@ -37,15 +37,15 @@ pub struct GimbalConfig {
     pub bearing_pitch_diameter_m: f64,
     /// c of (6.1) [N m/N].
     pub bearing_load_torque_nm_per_n: f64,
-    /// Exponent of F_s.
+    /// Exponent of `F_s`.
     pub bearing_load_exponent: f64,
-    /// Factor of F_a in F_s.
+    /// Factor of `F_a` in `F_s`.
     pub bearing_static_axial_factor: f64,
-    /// Factor of F_r in F_s.
+    /// Factor of `F_r` in `F_s`.
     pub bearing_static_radial_factor: f64,
-    /// Factor of F_a in (6.1).
+    /// Factor of `F_a` in (6.1).
     pub bearing_torque_axial_factor: f64,
-    /// Factor of F_r in (6.1).
+    /// Factor of `F_r` in (6.1).
     pub bearing_torque_radial_factor: f64,
     /// f0.
     pub bearing_lubrication_factor: f64,
@@ -53,11 +53,11 @@ pub struct GimbalConfig {
     pub bearing_viscosity_m2ps: f64,
     /// Viscous law: Harris's metric pair; false: the pair that the paper implies.
     pub bearing_viscous_metric: bool,
-    /// w_s [rad/s].
+    /// `w_s` [rad/s].
     pub bearing_slip_rate_radps: f64,
-    /// -m r_x [kg m].
+    /// -m `r_x` [kg m].
     pub unbalance_x_kg_m: f64,
-    /// -m r_y [kg m].
+    /// -m `r_y` [kg m].
     pub unbalance_y_kg_m: f64,
     /// Largest specific force along x and y [m/s2].
     pub range_radial_accel_mps2: f64,

@@ -30,7 +30,7 @@ pub struct GimbalOutputF32 {
     pub gimbal_rate_radps: f32,
     /// theta [rad].
     pub gyro_angle_rad: f32,
-    /// T_m [N m].
+    /// `T_m` [N m].
     pub motor_torque_nm: f32,
     /// Friction torque on the gimbal [N m].
     pub friction_torque_nm: f32,
@@ -77,7 +77,7 @@ pub struct GimbalOutputFixed {
     pub gimbal_rate_radps: i32,
     /// theta [rad].
     pub gyro_angle_rad: i32,
-    /// T_m [N m].
+    /// `T_m` [N m].
     pub motor_torque_nm: i32,
     /// Friction torque on the gimbal [N m].
     pub friction_torque_nm: i32,

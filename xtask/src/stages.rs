@@ -40,6 +40,7 @@ impl Stages {
             Stage { name: "lints", run: host::lints::check },
             Stage { name: "documents", run: host::documents::check },
             Stage { name: "oldest-rust", run: host::oldest_rust::check },
+            Stage { name: "package", run: host::package::check },
             Stage { name: "digests", run: host::digests::check },
             Stage { name: "target-setup", run: board::setup::check },
             Stage { name: "target-lints", run: board::lints::check },

@@ -8,5 +8,6 @@ pub(crate) mod format;
 pub(crate) mod licences;
 pub(crate) mod lints;
 pub(crate) mod oldest_rust;
+pub(crate) mod package;
 mod spdx;
 pub(crate) mod tests;
