@@ -60,14 +60,14 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         return refused(record);
     }
     let mut problem = Problem::new(&record, model);
-    let mut search = search(&problem);
+    let mut search = search(&mut problem);
     // a fit below the noise says that the noise was taken too high: what the effect did was in it
     if let Some(best) = search.fits.first()
         && best.square < TOO_QUIET * problem.whitener.count() as f64
     {
         let rest = crate::fit::raw_residual(&record, &best.prediction);
         problem = Problem::with_noise(&record, model, Some(&rest));
-        search = crate::fit::search(&problem);
+        search = crate::fit::search(&mut problem);
     }
     let decision = decide(&problem, &search, &model.tolerance);
     let channels = record.channels.len();
@@ -97,7 +97,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     };
     let power = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
     let all: f64 = contributions.iter().map(|contribution| power(contribution)).sum::<f64>().max(1e-30);
-    let gone = 1.0 - (decision.left_over[1] - 1.0).max(0.0) / (decision.left_over[0] - 1.0).max(1e-9);
+    let gone = 1.0 - decision.left_over[1] / decision.left_over[0].max(decision.left_over[1]).max(1e-9);
     let removes: Vec<f64> =
         contributions.iter().map(|c| (power(c) / all * gone.clamp(0.0, 1.0)).clamp(0.0, 1.0)).collect();
     let blocks = if fit.set.0.is_empty() {

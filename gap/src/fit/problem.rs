@@ -4,6 +4,7 @@ use gimbal_model_file::ModelFile;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
+use super::whiten::Loop;
 use super::{Normal, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, apply, candidates, nuisances};
 use crate::record::{Record, Signal};
@@ -83,7 +84,7 @@ impl<'a> Problem<'a> {
         let sees = |signal| record.channel(signal).is_some();
         let peak_torque_nm = record
             .channel(Signal::MotorTorque)
-            .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| peak(&channel.values));
+            .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| high(&channel.values));
         let offer = Offer {
             peak_torque_nm,
             cycles: &[],
@@ -120,7 +121,13 @@ impl<'a> Problem<'a> {
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             candidates.push(candidate);
         }
-        let whitener = Whitener::new(&rest, &valid);
+        let mut impulse = impulse(&base, record);
+        scale(std::slice::from_mut(&mut impulse), &scaled);
+        let turning = turning(&base, record, &nominal);
+        let period_s = record.inputs.period_s;
+        let turning_noise = turning_noise(&base, record, &nominal);
+        let whitener =
+            Whitener::new(&rest, &valid, Loop { impulse: &impulse, turning: &turning, turning_noise, period_s });
         let whitened: Vec<Vec<f64>> = raw_columns.into_par_iter().map(|column| whitener.apply(&column)).collect();
         let residual = whitener.apply(&target);
         let normal = Normal::new(&whitened, &residual, BLOCKS);
@@ -149,6 +156,26 @@ impl<'a> Problem<'a> {
         let scaled: Vec<f64> = self.noise.iter().map(|noise| 1.0 / noise).collect();
         scale(&mut signals, &scaled);
         self.whitener.apply(&signals[0])
+    }
+
+    /// Other columns in the place of the first.
+    pub(crate) fn replace(&mut self, columns: Vec<Vec<f64>>) {
+        let fixed = columns.len();
+        for (old, new) in self.whitened.iter_mut().zip(columns) {
+            *old = new;
+        }
+        let all = self.whitened.len();
+        let whitened = &self.whitened;
+        let row = |own: usize| -> Vec<f64> {
+            (0..all).into_par_iter().map(|other| dot(&whitened[own], &whitened[other])).collect()
+        };
+        for own in 0..fixed {
+            for (other, product) in row(own).into_iter().enumerate() {
+                self.normal.gram[(own, other)] = product;
+                self.normal.gram[(other, own)] = product;
+            }
+            self.normal.drive[own] = dot(&self.whitened[own], &self.residual);
+        }
     }
 
     /// Columns and prior precisions of a set of candidates.
@@ -290,6 +317,54 @@ fn valid(record: &Record) -> Vec<bool> {
     (0..record.rows()).map(|k| record.channels.iter().all(|channel| channel.valid[k])).collect()
 }
 
+/// Every channel after an impulse of torque on the gimbal, bearings and unbalance aside.
+fn impulse(base: &Physics, record: &Record) -> Signals {
+    let mut physics = base.clone();
+    physics.config.bearing.count = 0;
+    physics.config.unbalance.x_kg_m = 0.0;
+    physics.config.unbalance.y_kg_m = 0.0;
+    let rows = 4000;
+    let zero = || vec![0.0; rows];
+    let mut inputs = crate::simulate::Inputs {
+        period_s: record.inputs.period_s,
+        accel_mps2: [zero(), zero(), zero()],
+        rate_radps: zero(),
+        ..Default::default()
+    };
+    inputs.complete(&physics.config.bearing, 0.0);
+    let mut begin = Begin::at(&physics, &inputs, 0.0, Some(0.0));
+    begin.state[0] = IMPULSE_RADPS;
+    let run = predict(&physics, &inputs, &begin, rows);
+    record.channels.iter().map(|channel| predicted(channel.signal, &run).to_vec()).collect()
+}
+
+/// Rows at which friction turns around, with what follows.
+fn turning(base: &Physics, record: &Record, nominal: &Prediction) -> Vec<bool> {
+    let slip = base.config.bearing.slip_rate_radps;
+    let mut wait = 0_usize;
+    let rates = record.inputs.rate_radps.iter().zip(&nominal.gimbal_rate_radps);
+    rates
+        .map(|(vehicle, gimbal)| {
+            wait = if (vehicle - gimbal).abs() < 2.0 * slip { AFTER_TURNING } else { wait.saturating_sub(1) };
+            wait > 0
+        })
+        .collect()
+}
+
+/// Torque that the noise of the logged rate makes on the slope of the friction law, over that of the impulse.
+fn turning_noise(base: &Physics, record: &Record, nominal: &Prediction) -> f64 {
+    let always = vec![true; record.rows()];
+    let rate = rough(&record.inputs.rate_radps, &always);
+    let level = peak(&nominal.friction_nm);
+    let impulse_nm = base.config.servo.gimbal_inertia_kg_m2 * IMPULSE_RADPS / record.inputs.period_s;
+    rate * level / base.config.bearing.slip_rate_radps / impulse_nm
+}
+
+/// Rate after the impulse [rad/s].
+const IMPULSE_RADPS: f64 = 1e-3;
+/// Rows for which the loop remembers a disturbance.
+const AFTER_TURNING: usize = 40;
+
 /// Rms of white noise from third differences, whatever else there is.
 fn rough(values: &[f64], valid: &[bool]) -> f64 {
     let mut steps: Vec<f64> = (3..values.len())
@@ -327,6 +402,20 @@ fn rest(columns: &[Signals], target: &Signals, valid: &[bool], sigma: &[f64]) ->
         rest
     };
     (0..target.len()).into_par_iter().map(channel).collect()
+}
+
+/// Largest value that is held for a few rows.
+fn high(values: &[f64]) -> f64 {
+    values
+        .windows(5)
+        .map(|few| {
+            few.iter().fold(f64::MAX, |least, value| if value.is_finite() { least.min(value.abs()) } else { 0.0 })
+        })
+        .fold(0.0, f64::max)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn peak(values: &[f64]) -> f64 {

@@ -1,8 +1,11 @@
 //! A set of effects fitted to the outputs themselves: Gauss-Newton on predictions, nominal parameters and beginning
 //! along with it.
 
+use std::borrow::Cow;
+
 use gimbal_plant::{Bound, Effect};
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::normal::solve;
 use super::problem::{difference, residual};
@@ -12,6 +15,9 @@ use crate::simulate::{Begin, Physics, Prediction, predict};
 
 /// Most iterations.
 const ITERATIONS: usize = 12;
+const QUICK_ITERATIONS: usize = 5;
+/// How often sensitivities to the nominal parameters are taken anew.
+const REFRESHES: usize = 2;
 /// Share of the excess that is put down to the equations being linearised, as noise, while a fit is under way.
 const LINEARISED: f64 = 0.002;
 /// Standard deviation of the logarithm of a parameter that is not a size.
@@ -59,9 +65,10 @@ struct Free {
     center: f64,
 }
 
-/// Fits a set from the values given, and from the nominal parameters and the beginning of another fit.
+/// Fits a set from the values given, and from the nominal parameters and the beginning of another fit; a thorough
+/// one takes all sensitivities where it ends before it stops.
 #[must_use]
-pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fit>) -> Fit {
+pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fit>, thorough: bool) -> Fit {
     let mut values = start.to_vec();
     let mut shifts = from.map_or_else(|| vec![0.0; problem.nuisances.len()], |fit| fit.shifts.clone());
     let mut state = from.map_or_else(|| vec![0.0; problem.columns.begin], |fit| state_of(problem, fit));
@@ -76,13 +83,15 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
     let mut power = square(&now.1);
     let mut last = None;
     let limits = limits(problem, &precision);
-    for _ in 0..ITERATIONS {
+    let mut base = Linear::of(problem);
+    let mut refreshed = 0;
+    for _ in 0..if thorough { ITERATIONS } else { QUICK_ITERATIONS } {
         let excess = power - problem.whitener.count() as f64;
         let temper = (LINEARISED * excess).max(1.0);
         let cost = power / temper + priors(&values, &shifts, &state);
         let columns: Vec<Vec<f64>> =
             free.iter().map(|free| sensitivity(problem, set, &values, &shifts, &state, free, &now.0)).collect();
-        let (mut gram, mut drive, mut weights) = joined(problem, fixed, &columns, &now.1);
+        let (mut gram, mut drive, mut weights) = base.joined(&columns, &now.1);
         gram /= temper;
         drive /= temper;
         for (place, value) in state.iter().enumerate() {
@@ -94,34 +103,11 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
             drive[fixed + index] -= weight * off;
             weights.push(weight);
         }
-        // which walls the step ends behind decides which pull: solved until that stands
-        let mut ahead = shifts.clone();
-        let mut solution = None;
-        for _ in 0..5 {
-            let pull = Pull::ahead(problem, &precision, &shifts, &ahead);
-            let mut drive = drive.clone();
-            for (place, slope) in pull.slope.iter().enumerate() {
-                drive[state.len() + place] -= slope;
-            }
-            let weights: Vec<f64> =
-                precision[..state.len()].iter().chain(&pull.curvature).copied().chain(weights.clone()).collect();
-            let chosen: Vec<usize> = (0..weights.len()).collect();
-            let Some(found) = solve(&gram, &drive, &chosen, &weights) else { break };
-            let next: Vec<f64> = shifts
-                .iter()
-                .enumerate()
-                .map(|(place, shift)| shift + found.coefficients[state.len() + place])
-                .collect();
-            let same = Pull::ahead(problem, &precision, &shifts, &next).curvature == pull.curvature;
-            solution = Some(found);
-            ahead = next;
-            if same {
-                break;
-            }
-        }
-        let Some(solution) = solution else { break };
+        let equations = Equations { gram: &gram, drive: &drive, precision: &precision, weights: &weights };
+        let Some(solution) = step(problem, &equations, &shifts, state.len(), &limits) else { break };
         let mut share = 1.0;
         let mut better = false;
+        let mut poor = true;
         for _ in 0..4 {
             let step = &solution.coefficients * share;
             let (next_values, next_shifts, next_state) = moved(&free, &values, &shifts, &state, &step, &limits);
@@ -130,18 +116,91 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
             let next_cost = next_power / temper + priors(&next_values, &next_shifts, &next_state);
             if next_cost < cost {
                 better = cost - next_cost > 0.3 || (LINEARISED * excess) > 1.0 && next_power < 0.9 * power;
+                // what the linear equations promised
+                let promised = solution.gain * share * (2.0 - share);
+                poor = cost - next_cost < 0.6 * promised && promised > 4.0;
                 (values, shifts, state, now, power) = (next_values, next_shifts, next_state, next, next_power);
                 break;
             }
             share *= 0.3;
         }
         last = Some((solution, columns));
-        if !better {
+        if thorough && (poor || !better && refreshed == 0) && refreshed < REFRESHES {
+            refreshed += 1;
+            base = Linear::fresh(problem, set, &values, &shifts, &state, &now.0);
+        } else if !better {
             break;
         }
     }
     let prior = priors(&values, &shifts, &state);
     finish(problem, set, &free, Parts { values, shifts, state, now, prior, last })
+}
+
+/// Normal equations of a step, but for the pull of the priors of the nominal parameters.
+struct Equations<'a> {
+    gram: &'a DMatrix<f64>,
+    drive: &'a DVector<f64>,
+    /// Of the beginning and the nominal parameters.
+    precision: &'a [f64],
+    /// Precisions of the rest.
+    weights: &'a [f64],
+}
+
+/// Which walls the step ends behind decides which pull: solved until that stands.
+fn step(
+    problem: &Problem,
+    equations: &Equations,
+    shifts: &[f64],
+    state: usize,
+    limits: &[f64],
+) -> Option<super::Solution> {
+    let mut ahead = shifts.to_vec();
+    let mut held: Vec<Option<f64>> = vec![None; shifts.len()];
+    let mut solution = None;
+    for _ in 0..6 {
+        let pull = Pull::ahead(problem, equations.precision, shifts, &ahead);
+        let mut drive = equations.drive.clone();
+        let mut curvature = pull.curvature.clone();
+        for (place, slope) in pull.slope.iter().enumerate() {
+            drive[state + place] -= slope;
+            if let Some(limit) = held[place] {
+                let hold = 1e6 * curvature[place];
+                drive[state + place] += hold * (limit - shifts[place]);
+                curvature[place] += hold;
+            }
+        }
+        let weights: Vec<f64> = equations.precision[..state]
+            .iter()
+            .chain(&curvature)
+            .copied()
+            .chain(equations.weights.iter().copied())
+            .collect();
+        let chosen: Vec<usize> = (0..weights.len()).collect();
+        let Some(found) = solve(equations.gram, &drive, &chosen, &weights) else { break };
+        let next: Vec<f64> =
+            shifts.iter().enumerate().map(|(place, shift)| shift + found.coefficients[state + place]).collect();
+        let mut same =
+            next.iter().zip(&ahead).zip(&problem.nuisances).all(|((next, ahead), nuisance)| {
+                ahead.abs() > nuisance.tolerance() || next.abs() <= nuisance.tolerance()
+            });
+        for (place, next) in next.iter().enumerate() {
+            if held[place].is_none() && next.abs() > limits[place] {
+                held[place] = Some(limits[place].copysign(*next));
+                same = false;
+            }
+        }
+        solution = Some(found);
+        // a wall that was met stays for this step
+        for ((ahead, next), nuisance) in ahead.iter_mut().zip(next).zip(&problem.nuisances) {
+            if ahead.abs() <= nuisance.tolerance() {
+                *ahead = next;
+            }
+        }
+        if same {
+            break;
+        }
+    }
+    solution
 }
 
 impl Fit {
@@ -206,6 +265,14 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
     evaluate(problem, &fit.set, &values, &shifts, &state).0
 }
 
+/// Takes the sensitivities to the nominal parameters where a fit ended.
+pub(crate) fn rebase(problem: &mut Problem, fit: &Fit) {
+    let state = state_of(problem, fit);
+    let linear = Linear::fresh(problem, &fit.set, &fit.values, &fit.shifts, &state, &fit.prediction);
+    let columns = linear.columns.into_owned();
+    problem.replace(columns);
+}
+
 /// What one effect of a fit contributes, whitened.
 #[must_use]
 pub fn without(problem: &Problem, fit: &Fit, place: usize) -> Vec<f64> {
@@ -254,8 +321,10 @@ fn finish(problem: &Problem, set: &Set, free: &[Free], parts: Parts) -> Fit {
             for (place, release) in problem.candidates[index].releases.iter().enumerate() {
                 if let Some(nuisance) = problem.nuisances.iter().position(|nuisance| nuisance.name == *release) {
                     let column = problem.columns.begin + nuisance;
-                    values[effect][place] = shifts[nuisance];
-                    errors[effect][place] = solution.covariance[(column, column)].max(0.0).sqrt();
+                    let own = &problem.nuisances[nuisance];
+                    let sigma = solution.covariance[(column, column)].max(0.0).sqrt();
+                    values[effect][place] = own.change(shifts[nuisance]);
+                    errors[effect][place] = own.change(shifts[nuisance] + sigma) - values[effect][place];
                 }
             }
         }
@@ -444,26 +513,74 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Normal equations of the fixed columns and the new ones.
-fn joined(
-    problem: &Problem,
-    fixed: usize,
-    columns: &[Vec<f64>],
-    residual: &[f64],
-) -> (DMatrix<f64>, DVector<f64>, Vec<f64>) {
-    let n = fixed + columns.len();
-    let mut gram = DMatrix::zeros(n, n);
-    gram.view_mut((0, 0), (fixed, fixed)).copy_from(&problem.normal.gram.view((0, 0), (fixed, fixed)));
-    let column = |index: usize| if index < fixed { &problem.whitened[index] } else { &columns[index - fixed] };
-    let drive = DVector::from_fn(n, |index, _| dot(column(index), residual));
-    for own in fixed..n {
-        for other in 0..=own {
-            let product = dot(column(own), column(other));
-            gram[(own, other)] = product;
-            gram[(other, own)] = product;
-        }
+/// Sensitivities to the beginning and to the nominal parameters, and their Gram matrix.
+struct Linear<'a> {
+    columns: Cow<'a, [Vec<f64>]>,
+    gram: DMatrix<f64>,
+}
+
+impl<'a> Linear<'a> {
+    /// Those of the nominal platform.
+    fn of(problem: &'a Problem) -> Self {
+        let fixed = problem.columns.begin + problem.columns.nuisances;
+        let gram = problem.normal.gram.view((0, 0), (fixed, fixed)).into_owned();
+        Self { columns: Cow::Borrowed(&problem.whitened[..fixed]), gram }
     }
-    (gram, drive, Vec::new())
+
+    /// Those of the platform as it is fitted now.
+    fn fresh(
+        problem: &Problem,
+        set: &Set,
+        values: &[Vec<f64>],
+        shifts: &[f64],
+        state: &[f64],
+        now: &Prediction,
+    ) -> Self {
+        let inputs = &problem.record.inputs;
+        let fixed = problem.columns.begin + problem.columns.nuisances;
+        let column = |place: usize| {
+            let (mut shifts, mut state) = (shifts.to_vec(), state.to_vec());
+            let step = if place < state.len() {
+                let step = 0.05 * problem.sigma[place];
+                state[place] += step;
+                step
+            } else {
+                let step = problem.nuisances[place - state.len()].step;
+                shifts[place - state.len()] += step;
+                step
+            };
+            let moved = predict(&physics(problem, set, values, &shifts), inputs, &begin(problem, &state), usize::MAX);
+            problem.whiten(difference(problem.record, &moved, now, step))
+        };
+        let columns: Vec<Vec<f64>> = (0..fixed).into_par_iter().map(column).collect();
+        let mut gram = DMatrix::zeros(fixed, fixed);
+        for own in 0..fixed {
+            for other in 0..=own {
+                let product = dot(&columns[own], &columns[other]);
+                gram[(own, other)] = product;
+                gram[(other, own)] = product;
+            }
+        }
+        Self { columns: Cow::Owned(columns), gram }
+    }
+
+    /// Normal equations of these columns and others.
+    fn joined(&self, others: &[Vec<f64>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>, Vec<f64>) {
+        let fixed = self.columns.len();
+        let n = fixed + others.len();
+        let mut gram = DMatrix::zeros(n, n);
+        gram.view_mut((0, 0), (fixed, fixed)).copy_from(&self.gram);
+        let column = |index: usize| if index < fixed { &self.columns[index] } else { &others[index - fixed] };
+        let drive = DVector::from_fn(n, |index, _| dot(column(index), residual));
+        for own in fixed..n {
+            for other in 0..=own {
+                let product = dot(column(own), column(other));
+                gram[(own, other)] = product;
+                gram[(other, own)] = product;
+            }
+        }
+        (gram, drive, Vec::new())
+    }
 }
 
 fn moved(

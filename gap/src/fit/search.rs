@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 
 use super::normal::solve;
-use super::refine::Pull;
+use super::refine::{Pull, rebase};
 use super::{Fit, Problem, refine};
 use crate::record::{Record, Signal};
 use crate::simulate::Prediction;
@@ -35,8 +35,10 @@ const PROMISE_OF_SHIFT: f64 = 3.0;
 
 /// Looks through the library.
 #[must_use]
-pub fn search(problem: &Problem) -> Search {
-    let null = polish(problem, refine(problem, &Set::default(), &[], None));
+pub fn search(problem: &mut Problem) -> Search {
+    let null = polish(problem, refine(problem, &Set::default(), &[], None, true));
+    rebase(problem, &null);
+    let problem = &*problem;
     let ranked = extensions(problem, &null);
     let singles = ranked.iter().map(|entry| entry.1).collect();
     let mut fits = Vec::new();
@@ -95,7 +97,7 @@ fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
             let (mut set, mut values) = (fit.set.clone(), fit.values.clone());
             set.0.remove(place);
             values.remove(place);
-            polish(problem, refine(problem, &set, &values, Some(fit)))
+            polish(problem, refine(problem, &set, &values, Some(fit), false))
         })
         .collect();
     for fit in reduced {
@@ -110,12 +112,12 @@ fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
 }
 
 /// Hypotheses that are fitted until nothing moves any more.
-const POLISHED: usize = 6;
+const POLISHED: usize = 4;
 
 /// Fits on from where a fit ended, until it stands still.
 fn polish(problem: &Problem, mut fit: Fit) -> Fit {
-    for _ in 0..4 {
-        let next = refine(problem, &fit.set, &fit.values, Some(&fit));
+    for _ in 0..2 {
+        let next = refine(problem, &fit.set, &fit.values, Some(&fit), true);
         let gained = 0.5 * (fit.square + fit.prior) - 0.5 * (next.square + next.prior);
         if next.volume.is_finite() {
             fit = next;
@@ -235,7 +237,7 @@ fn extend(problem: &Problem, from: &Fit, index: usize) -> Fit {
     set.0.push(index);
     let mut values = from.values.clone();
     values.push(problem.candidates[index].values(&amplitudes));
-    refine(problem, &set, &values, None)
+    refine(problem, &set, &values, Some(from), false)
 }
 
 /// Cycles a revolution at which the torque residual has lines: a matched filter in rel.

@@ -1,141 +1,130 @@
-//! Whitening: all channels together through a vector autoregression, fitted to what no effect explains.
+//! Whitening: each channel divided by the spectrum of its noise.
 //!
 //! ```text
-//! w_k = L^-1 (e_k - A_1 e_(k-1) - ... - A_p e_(k-p))        L L' the covariance of the innovation
+//! P(f) = w + l |G(f)|^2 + b / (1 + (f / f_c)^2)         w, l, b >= 0
 //! ```
 //!
-//! Windows with the largest energy are left out of the fit, so that what happens now and then is no noise.
+//! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
+//! to the channel), b noise of low frequency with its corner. Only what has one of these shapes is noise. Fitted by
+//! Whittle's likelihood to medians over segments, so that what happens now and then is no noise either. While the
+//! bearing turns around, noise of the logged rate comes through the slope of the friction law: there
+//! `P + s^2 |G(f)|^2`, s the torque that the rate's noise makes.
 
-use nalgebra::{Cholesky, DMatrix};
+use std::fmt;
+use std::sync::Arc;
 
-/// p.
-const ORDER: usize = 12;
-/// Rows of a window.
-const WINDOW: usize = 400;
-/// Share of the windows, the quietest, that the noise is taken from.
-const QUIET: f64 = 0.75;
+use realfft::num_complex::Complex;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+
+/// Rows of a segment.
+const SEGMENT: usize = 4096;
+/// Bands in which power is taken, and steps of the fit.
+const BANDS: usize = 36;
+const STEPS: usize = 120;
+/// Corners that are tried [Hz].
+const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
+
+/// Power of a channel's noise over frequency, 1 for white noise of unit variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// w.
+    pub white: f64,
+    /// l.
+    pub inputs: f64,
+    /// b.
+    pub low: f64,
+    /// `f_c` [Hz].
+    pub corner_hz: f64,
+}
 
 /// A whitening filter.
 #[derive(Debug, Clone)]
 pub struct Whitener {
-    channels: usize,
-    /// For each lag from 0: the matrix that acts on the sample, row by row.
-    taps: Vec<Vec<f64>>,
+    /// The noise of each channel.
+    pub noise: Vec<Noise>,
     /// Rows that count.
     pub valid: Vec<bool>,
-    /// Weight of each row: noise that comes in bursts counts less where it does.
-    pub weight: Vec<f64>,
+    /// `1 / sqrt(P)` at the lines of the transform.
+    gains: Vec<Vec<f64>>,
+    /// The same while the bearing turns around.
+    turning_gains: Vec<Vec<f64>>,
+    turning: Vec<bool>,
+    plans: Plans,
 }
 
-/// Rows to either side over which the local power is taken.
-const AROUND: usize = 30;
+/// The transforms there and back.
+#[derive(Clone)]
+struct Plans {
+    length: usize,
+    forward: Arc<dyn RealToComplex<f64>>,
+    back: Arc<dyn ComplexToReal<f64>>,
+}
+
+impl fmt::Debug for Plans {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "transforms of {}", self.length)
+    }
+}
+
+/// Where the noise of inputs acts.
+#[derive(Debug, Clone, Copy)]
+pub struct Loop<'a> {
+    /// Each channel after an impulse of torque.
+    pub impulse: &'a [Vec<f64>],
+    /// Rows at which the bearing may turn around, and those just after.
+    pub turning: &'a [bool],
+    /// s, in units of the impulse.
+    pub turning_noise: f64,
+    /// Time between two rows [s].
+    pub period_s: f64,
+}
 
 impl Whitener {
     /// Fits the filter to a residual, channel by channel.
     #[must_use]
-    pub fn new(residual: &[Vec<f64>], valid: &[bool]) -> Self {
-        let channels = residual.len();
-        let size = channels * (ORDER + 1);
+    pub fn new(residual: &[Vec<f64>], valid: &[bool], behind: Loop) -> Self {
         let rows = valid.len();
-        // covariance of the stacked past, window by window
-        let mut windows: Vec<(f64, DMatrix<f64>)> = Vec::new();
-        let mut start = ORDER;
-        let stride = (rows / 12_000).max(1);
-        while start + WINDOW <= rows {
-            if valid[start - ORDER..start + WINDOW].iter().all(|valid| *valid) {
-                let picks: Vec<usize> = (start..start + WINDOW).step_by(stride).collect();
-                let stacked = DMatrix::from_fn(size, picks.len(), |place, column| {
-                    residual[place % channels][picks[column] - place / channels]
-                });
-                let covariance = &stacked * stacked.transpose() / picks.len() as f64;
-                windows.push(((0..channels).map(|c| covariance[(c, c)]).sum(), covariance));
-            }
-            start += WINDOW;
+        let plans = Plans::new(rows + SEGMENT.min(rows));
+        let step_hz = 1.0 / (plans.length as f64 * behind.period_s);
+        let quiet: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && !turning).collect();
+        let mut noise = Vec::new();
+        let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
+        for (channel, impulse) in residual.iter().zip(behind.impulse) {
+            let response: Vec<f64> = plans.lines(impulse).iter().map(Complex::norm_sqr).collect();
+            let shape = |hz: f64| at(&response, hz / step_hz);
+            let bands = Bands::new(channel, if enough(&quiet) { &quiet } else { valid }, behind.period_s);
+            let own = bands.fit(&shape);
+            let gain = |more: f64| -> Vec<f64> {
+                let of = |line: usize| own.power(line as f64 * step_hz, response[line]) + more * response[line];
+                (0..=plans.length / 2).map(|line| 1.0 / of(line).max(1e-300).sqrt()).collect()
+            };
+            gains.push(gain(0.0));
+            turning_gains.push(gain(behind.turning_noise * behind.turning_noise));
+            noise.push(own);
         }
-        windows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
-        let kept = ((windows.len() as f64 * QUIET) as usize).max(1).min(windows.len());
-        let mut covariance = DMatrix::identity(size, size) * 1e-9;
-        for (_, window) in &windows[..kept] {
-            covariance += window / kept as f64;
-        }
-        if windows.is_empty() {
-            covariance += DMatrix::identity(size, size);
-        }
-        let mut whitener = Self::from_covariance(channels, &covariance);
-        whitener.valid = (0..rows).map(|k| k >= ORDER && valid[k - ORDER..=k].iter().all(|valid| *valid)).collect();
-        whitener.weight = vec![1.0; rows];
-        let white = whitener.apply(residual);
-        whitener.weight = whitener.local(&white);
-        whitener
-    }
-
-    fn from_covariance(channels: usize, covariance: &DMatrix<f64>) -> Self {
-        let past = covariance.nrows() - channels;
-        let identity = DMatrix::identity(channels, channels);
-        let own = covariance.view((0, 0), (channels, channels)).into_owned();
-        let cross = covariance.view((0, channels), (channels, past)).into_owned();
-        let mut inner = covariance.view((channels, channels), (past, past)).into_owned();
-        let ridge = 1e-6 * inner.trace() / past as f64;
-        inner += DMatrix::identity(past, past) * ridge;
-        let gains = Cholesky::new(inner)
-            .map_or_else(|| DMatrix::zeros(channels, past), |c| c.solve(&cross.transpose()).transpose());
-        let innovation = &own - &gains * cross.transpose();
-        let lower = Cholesky::new((&innovation + innovation.transpose()) * 0.5).map_or(identity.clone(), |c| c.l());
-        let scale = lower.try_inverse().unwrap_or(identity);
-        let flat = |matrix: &DMatrix<f64>| -> Vec<f64> { matrix.transpose().iter().copied().collect() };
-        let mut taps = vec![flat(&scale)];
-        for lag in 0..ORDER {
-            let gain = gains.view((0, lag * channels), (channels, channels)).into_owned();
-            taps.push(flat(&(-(&scale * gain))));
-        }
-        Self { channels, taps, valid: Vec::new(), weight: Vec::new() }
-    }
-
-    /// Weights that bring a whitened residual down to unit power everywhere.
-    #[must_use]
-    pub fn local(&self, white: &[f64]) -> Vec<f64> {
-        let (channels, rows) = (self.channels, self.valid.len());
-        let mut sums = vec![(0.0, 0.0); rows + 1];
-        for k in 0..rows {
-            let power: f64 = white[k * channels..(k + 1) * channels].iter().map(|value| value * value).sum();
-            let count = if self.valid[k] { channels as f64 } else { 0.0 };
-            sums[k + 1] = (sums[k].0 + power, sums[k].1 + count);
-        }
-        // 1.0 and three standard errors of the mean: quiet noise keeps its weight
-        let quiet = 1.0 + 3.0 * (2.0 / (channels as f64 * (2 * AROUND + 1) as f64)).sqrt();
-        (0..rows)
-            .map(|k| {
-                let (from, to) = (k.saturating_sub(AROUND), (k + AROUND + 1).min(rows));
-                let count = sums[to].1 - sums[from].1;
-                let power = if count > 0.0 { (sums[to].0 - sums[from].0) / count } else { 1.0 };
-                if power > quiet { (1.0 / power).sqrt() } else { 1.0 }
-            })
-            .collect()
+        Self { noise, valid: valid.to_vec(), gains, turning_gains, turning: behind.turning.to_vec(), plans }
     }
 
     /// The whitened samples of all channels, row after row; masked rows are zero.
     #[must_use]
     pub fn apply(&self, signals: &[Vec<f64>]) -> Vec<f64> {
-        let (channels, rows) = (self.channels, signals[0].len());
+        let (channels, rows) = (signals.len(), self.valid.len());
         let mut out = vec![0.0; channels * rows];
-        for to in 0..channels {
-            for from in 0..channels {
-                let taps: Vec<f64> = self.taps.iter().map(|tap| tap[to * channels + from]).collect();
-                let signal = &signals[from];
-                for k in ORDER..rows {
-                    let past = &signal[k - ORDER..=k];
-                    let sum: f64 = past.iter().rev().zip(&taps).map(|(sample, tap)| sample * tap).sum();
-                    out[k * channels + to] += sum;
+        for (channel, signal) in signals.iter().enumerate() {
+            let masked: Vec<f64> =
+                signal.iter().zip(&self.valid).map(|(value, valid)| if *valid { *value } else { 0.0 }).collect();
+            let lines = self.plans.lines(&masked);
+            for (gain, turning) in [(&self.gains[channel], false), (&self.turning_gains[channel], true)] {
+                if turning && !self.turning.contains(&true) {
+                    continue;
                 }
-            }
-        }
-        for (k, valid) in self.valid.iter().enumerate().take(rows) {
-            if !valid {
-                out[k * channels..(k + 1) * channels].fill(0.0);
-            } else if self.weight[k] < 1.0 {
-                for value in &mut out[k * channels..(k + 1) * channels] {
-                    *value *= self.weight[k];
+                let mut lines = lines.clone();
+                for (line, gain) in lines.iter_mut().zip(gain) {
+                    *line *= gain / self.plans.length as f64;
+                }
+                let series = self.plans.series(&mut lines);
+                for k in (0..rows).filter(|&k| self.valid[k] && self.turning[k] == turning) {
+                    out[k * channels + channel] = series[k];
                 }
             }
         }
@@ -145,6 +134,150 @@ impl Whitener {
     /// Samples that count.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.channels * self.valid.iter().filter(|valid| **valid).count()
+        self.gains.len() * self.valid.iter().filter(|valid| **valid).count()
     }
+}
+
+impl Plans {
+    fn new(least: usize) -> Self {
+        let mut length = least.next_power_of_two();
+        for odd in [3, 5, 9, 15] {
+            let other = odd * (least.div_ceil(odd)).next_power_of_two();
+            length = length.min(other.max(2));
+        }
+        let mut planner = RealFftPlanner::<f64>::new();
+        Self { length, forward: planner.plan_fft_forward(length), back: planner.plan_fft_inverse(length) }
+    }
+
+    fn lines(&self, values: &[f64]) -> Vec<Complex<f64>> {
+        let mut padded = values.to_vec();
+        padded.resize(self.length, 0.0);
+        let mut lines = self.forward.make_output_vec();
+        // lengths are the plan's own
+        let _ = self.forward.process(&mut padded, &mut lines);
+        lines
+    }
+
+    fn series(&self, lines: &mut [Complex<f64>]) -> Vec<f64> {
+        lines[0].im = 0.0;
+        if let Some(last) = lines.last_mut() {
+            last.im = 0.0;
+        }
+        let mut series = self.back.make_output_vec();
+        let _ = self.back.process(lines, &mut series);
+        series
+    }
+}
+
+impl Noise {
+    fn power(&self, hz: f64, response: f64) -> f64 {
+        self.white + self.inputs * response + self.low * low(hz, self.corner_hz)
+    }
+}
+
+fn low(hz: f64, corner_hz: f64) -> f64 {
+    1.0 / (1.0 + (hz / corner_hz) * (hz / corner_hz))
+}
+
+/// Measured power in bands.
+struct Bands {
+    hz: Vec<f64>,
+    power: Vec<f64>,
+    /// Degrees of freedom.
+    weight: Vec<f64>,
+}
+
+impl Bands {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
+    fn new(values: &[f64], valid: &[bool], period_s: f64) -> Self {
+        let length = SEGMENT.min(values.len());
+        let plans = Plans::new(length);
+        let window: Vec<f64> =
+            (0..length).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / length as f64).cos()).collect();
+        let mut segments: Vec<Vec<f64>> = Vec::new();
+        for start in (0..=values.len() - length).step_by((length / 2).max(1)) {
+            let of = |k: usize| if valid[start + k] { values[start + k] * window[k] } else { 0.0 };
+            let gain: f64 = (0..length).filter(|&k| valid[start + k]).map(|k| window[k] * window[k]).sum();
+            let all: f64 = window.iter().map(|value| value * value).sum();
+            if gain > 0.5 * all {
+                let tapered: Vec<f64> = (0..length).map(of).collect();
+                segments.push(plans.lines(&tapered).iter().map(|line| line.norm_sqr() / gain).collect());
+            }
+        }
+        let step_hz = 1.0 / (plans.length as f64 * period_s);
+        let (first, last) = (1.5 * step_hz, 0.5 / period_s);
+        let edge = |band: usize| first * (last / first).powf(band as f64 / BANDS as f64);
+        let mut bands = Self { hz: Vec::new(), power: Vec::new(), weight: Vec::new() };
+        for band in 0..BANDS {
+            let (from, to) = ((edge(band) / step_hz).ceil() as usize, (edge(band + 1) / step_hz).ceil() as usize);
+            let to = to.min(plans.length / 2);
+            if segments.is_empty() || to <= from {
+                continue;
+            }
+            let mut means: Vec<f64> =
+                segments.iter().map(|power| power[from..to].iter().sum::<f64>() / (to - from) as f64).collect();
+            means.sort_by(f64::total_cmp);
+            // the median of a chi square of n degrees over its mean
+            let n = 2.0 * (to - from) as f64 * length as f64 / plans.length as f64;
+            let median = (1.0 - 2.0 / (9.0 * n.max(1.0))).powi(3);
+            bands.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
+            bands.power.push(means[means.len() / 2] / median);
+            bands.weight.push(n * segments.len() as f64);
+        }
+        bands
+    }
+
+    /// The shapes that make the measured powers most likely.
+    fn fit(&self, response: &dyn Fn(f64) -> f64) -> Noise {
+        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, low: 0.0, corner_hz: 1.0 });
+        let mean = self.power.iter().sum::<f64>() / self.power.len().max(1) as f64;
+        let peak = self.hz.iter().map(|hz| response(*hz)).fold(1e-300, f64::max);
+        for corner_hz in CORNERS_HZ {
+            let bases: Vec<[f64; 3]> =
+                self.hz.iter().map(|&hz| [1.0, response(hz) / peak, low(hz, corner_hz)]).collect();
+            let mut share = [mean, 0.1 * mean, 0.1 * mean];
+            let power = |share: &[f64; 3], basis: &[f64; 3]| -> f64 {
+                share.iter().zip(basis).map(|(a, b)| a * b).sum::<f64>().max(1e-300)
+            };
+            for _ in 0..STEPS {
+                let (mut up, mut down) = ([0.0; 3], [0.0; 3]);
+                for ((basis, measured), weight) in bases.iter().zip(&self.power).zip(&self.weight) {
+                    let model = power(&share, basis);
+                    for part in 0..3 {
+                        up[part] += weight * basis[part] * measured / (model * model);
+                        down[part] += weight * basis[part] / model;
+                    }
+                }
+                for part in 0..3 {
+                    share[part] *= up[part] / down[part].max(1e-300);
+                }
+            }
+            let unlikely: f64 = bases
+                .iter()
+                .zip(&self.power)
+                .zip(&self.weight)
+                .map(|((basis, measured), weight)| {
+                    let model = power(&share, basis);
+                    weight * (model.ln() + measured / model)
+                })
+                .sum();
+            if unlikely < best.0 {
+                let [white, inputs, low] = share;
+                best = (unlikely, Noise { white, inputs: inputs / peak, low, corner_hz });
+            }
+        }
+        best.1
+    }
+}
+
+fn enough(valid: &[bool]) -> bool {
+    4 * valid.iter().filter(|valid| **valid).count() > valid.len()
+}
+
+/// A value between two lines.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
+fn at(values: &[f64], place: f64) -> f64 {
+    let low = (place as usize).min(values.len() - 1);
+    let high = (low + 1).min(values.len() - 1);
+    values[low] + (place - low as f64) * (values[high] - values[low])
 }

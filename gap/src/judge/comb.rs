@@ -1,7 +1,5 @@
 //! `pickoff_quantisation` in the samples themselves: angles on a grid of step q make `mean exp(2 pi i theta / q)`
-//! differ from what the predicted angles and white noise give. All steps at once: the transform of two histograms.
-
-use std::f64::consts::TAU;
+//! larger than that of the predicted angles. All steps at once: the transform of two histograms.
 
 use realfft::RealFftPlanner;
 
@@ -11,12 +9,12 @@ const COARSEST_RAD: f64 = 3e-5;
 /// Width of a bin of the histograms [rad], and their number.
 const BIN_RAD: f64 = 1e-7;
 const BINS: usize = 1 << 16;
-/// Standard deviations that the line must stand out by.
-const STANDS_OUT: f64 = 6.5;
+/// Share of the samples, all in step, that a line must stand out by.
+const STANDS_OUT: f64 = 0.2;
 
 /// The step of the pick-off, if its samples lie on a grid.
 #[must_use]
-pub(crate) fn step_rad(theta: &[f64], predicted: &[f64], valid: &[bool], sigma: f64) -> Option<f64> {
+pub(crate) fn step_rad(theta: &[f64], predicted: &[f64], valid: &[bool]) -> Option<f64> {
     let mut measured = vec![0.0; BINS];
     let mut expected = vec![0.0; BINS];
     let mut count = 0.0;
@@ -35,10 +33,7 @@ pub(crate) fn step_rad(theta: &[f64], predicted: &[f64], valid: &[bool], sigma: 
     transform.process(&mut measured, &mut a).ok()?;
     transform.process(&mut expected, &mut b).ok()?;
     let step = 1.0 / (BINS as f64 * BIN_RAD);
-    let strength = |line: usize| {
-        let blur = (-0.5 * (TAU * sigma * line as f64 * step).powi(2)).exp();
-        (a[line] - b[line] * blur).norm() / (count / 2.0_f64).sqrt()
-    };
+    let strength = |line: usize| (a[line].norm() - b[line].norm()) / count;
     let lines = (0..a.len()).filter(|&line| {
         let inverse = line as f64 * step;
         inverse > 1.0 / COARSEST_RAD && inverse < 1.0 / FINEST_RAD

@@ -4,13 +4,13 @@ use gimbal_model_file::Tolerance;
 use gimbal_plant::Effect;
 
 use super::comb;
+use super::left_over::left_over;
 use crate::fit::{Fit, Problem, Search};
-use crate::place::Spectrum;
 use crate::record::Signal;
 
 /// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
 const COST: f64 = 14.0;
-const COST_OF_SHIFT: f64 = 3.0;
+const COST_OF_SHIFT: f64 = 6.0;
 /// A nominal parameter is an effect from this many tolerances on.
 const BEYOND: f64 = 1.15;
 /// Share of the best fit's excess put down to the formulation.
@@ -18,8 +18,11 @@ const FORMULATION: f64 = 0.01;
 /// Nats that count as one in probabilities: a constant, and a share of what the best set gains.
 const SCALE: f64 = 2.0;
 const SCALE_SHARE: f64 = 1e-5;
-/// Power of the residual over white noise, 0.3 to 20 Hz, up to which nothing is left over.
-const LEFT_OVER: f64 = 35.0;
+/// Standard deviations that what is left may stand out by, and the spread of that limit.
+const LEFT_OVER: f64 = 18.0;
+const LEFT_OVER_SCALE: f64 = 4.0;
+/// Share of a gap that an effect's formulation may leave.
+const FORMULATION_LEAVES: f64 = 0.05;
 /// Least share of the gap that an effect takes away.
 const LEAST_SHARE: f64 = 0.003;
 
@@ -143,8 +146,8 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let mut order: Vec<usize> = (0..weights.len()).collect();
     order.sort_by(|a, b| weights[*b].total_cmp(&weights[*a]));
     let chosen = order.first().copied().filter(|&index| weights[index] > null_weight / sum);
-    let before = left_over(problem, &search.null);
-    let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index]));
+    let before = left_over(problem, &search.null.residual);
+    let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index].residual));
     let unknown = unknown(before, after, chosen.is_some());
     let share = 1.0 - unknown;
     let set_of = |index: usize| SetProbability {
@@ -194,7 +197,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
             decision.found.clear();
             decision.chosen = None;
             Verdict::Unexplained
-        } else if after > LEFT_OVER {
+        } else if after > LEFT_OVER + LEFT_OVER_SCALE {
             Verdict::PartlyExplained
         } else if decision.alternatives.is_empty() {
             Verdict::Explained
@@ -204,7 +207,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         if decision.verdict != Verdict::CannotTell {
             decision.alternatives.clear();
         }
-    } else if before > LEFT_OVER {
+    } else if unknown > 0.5 {
         decision.verdict = Verdict::Unexplained;
     }
     let fit = chosen.map_or(&search.null, |index| &search.fits[index]);
@@ -234,32 +237,12 @@ fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, values: &[f64]
     values.iter().zip(errors).any(|(value, error)| value.abs() - error > BEYOND * tolerance.of(effect) * scale)
 }
 
-/// Power left over, 0.3 to 20 Hz, in the channel where most is left; 1 is white noise.
-fn left_over(problem: &Problem, fit: &Fit) -> f64 {
-    let record = problem.record;
-    let residual = crate::fit::raw_residual(record, &fit.prediction);
-    record
-        .channels
-        .iter()
-        .zip(&residual)
-        .zip(&problem.noise)
-        .filter(|((channel, _), _)| channel.signal != Signal::GimbalAngle)
-        .map(|((channel, residual), sigma)| {
-            Spectrum::new(residual, &channel.valid, *sigma, record.inputs.period_s).mean(0.3, 20.0)
-        })
-        .fold(0.0, f64::max)
-}
-
-/// How probable it is that no effect of the library is it.
+/// How probable it is that no effect of the library is it, from what stands out before and after.
 fn unknown(before: f64, after: f64, found: bool) -> f64 {
-    if after <= LEFT_OVER {
-        return 0.02 * (after / LEFT_OVER).clamp(0.1, 1.0);
-    }
-    if !found {
-        return (1.0 - 0.5 * LEFT_OVER / after).clamp(0.5, 0.98);
-    }
-    let share = after / before.max(after);
-    (share / (share + 0.12)).clamp(0.02, 0.98)
+    let stands_out = 1.0 / (1.0 + (-(after - LEFT_OVER) / LEFT_OVER_SCALE).exp());
+    // a large effect in another formulation leaves something too
+    let share = if found { after / before.max(after).max(1e-9) } else { 1.0 };
+    (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES)).clamp(0.002, 0.98)
 }
 
 /// What the samples show by themselves: a stop elsewhere, a grid of angles.
@@ -277,7 +260,7 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
             set.effects.push(effect);
         }
         if decision.verdict == Verdict::NoGap
-            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 3.0 * LEFT_OVER
+            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 10.0 * LEFT_OVER
         {
             decision.verdict = Verdict::Explained;
             decision.unknown_probability = decision.unknown_probability.min(0.05);
@@ -290,8 +273,7 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
         }
     }
     if let Some(theta) = problem.record.channel(Signal::GyroAngle)
-        && let Some(step) =
-            comb::step_rad(&theta.values, &fit.prediction.gyro_angle_rad, &theta.valid, problem.noise[0])
+        && let Some(step) = comb::step_rad(&theta.values, &fit.prediction.gyro_angle_rad, &theta.valid)
     {
         add("pickoff_quantisation", step, 1e-3 * step, 0.97);
     }

@@ -4,6 +4,7 @@ mod comb;
 mod decide;
 mod detectable;
 mod experiment;
+mod left_over;
 mod shrink;
 
 pub use decide::{Decision, Found, SetProbability, Verdict, decide};

@@ -7,7 +7,7 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
     let v = |index: usize| values.get(index).copied().unwrap_or(0.0);
     let config = &mut physics.config;
     match effect {
-        "friction_level" => physics.friction.level += v(0),
+        "friction_level" => physics.friction.load_factor *= 1.0 + v(0),
         "viscous_friction" => physics.friction.viscous_nm_s += v(0),
         "stribeck" => physics.friction.stribeck = Some([v(0), v(1)]),
         "presliding" => physics.friction.presliding_rad = v(0),
@@ -41,9 +41,9 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
         "g_sensitive_float_torque" => physics.float_kg_m += v(0),
         "gimbal_inertia" => config.servo.gimbal_inertia_kg_m2 *= 1.0 + v(0),
         "flexible_mode" => physics.appendage = Some([v(0).clamp(0.0, 0.9), v(1), v(2)]),
-        "pickoff_scale" => physics.measurement.pickoff_scale += v(0),
+        "pickoff_scale" => physics.measurement.pickoff_factor *= 1.0 + v(0),
         "pickoff_bias" => physics.measurement.pickoff_bias_rad += v(0),
-        "torque_scale" => physics.measurement.torque_scale += v(0),
+        "torque_scale" => physics.measurement.torque_factor *= 1.0 + v(0),
         "torque_bias" => physics.measurement.torque_bias_nm += v(0),
         "time_skew" => physics.measurement.skew_s += v(0),
         _ => {}

@@ -68,7 +68,7 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "dead_zone" => secants(effect, &[3e-5, 1.2e-4, 5e-4].map(|width| vec![width])),
         "torque_saturation" => {
             let peak = offer.peak_torque_nm;
-            secants(effect, &[0.97, 0.85, 0.7].map(|share| vec![share * peak]))
+            secants(effect, &[1.0, 0.985, 0.965, 0.93, 0.85, 0.7].map(|share| vec![share * peak]))
         }
         "torque_ripple" => {
             let one = |cycles: f64| {
@@ -172,7 +172,7 @@ impl Candidate {
     fn secant_factor(&self, amplitude: f64) -> f64 {
         match self.effect {
             // a higher limit shows less
-            "torque_saturation" => (1.0 + 0.15 * (1.0 - amplitude)).clamp(0.7, 1.3),
+            "torque_saturation" => (1.0 + 0.02 * (1.0 - amplitude)).clamp(0.97, 1.02),
             _ => amplitude.clamp(0.2, 4.0),
         }
     }

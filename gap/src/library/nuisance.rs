@@ -9,6 +9,9 @@ const UNIFORM: f64 = 0.7;
 /// The same for what lies beyond it.
 const BEYOND: f64 = 0.25;
 
+/// Alignment of the accelerometers with the platform's axes [rad].
+const ALIGNMENT_RAD: f64 = 1e-3;
+
 /// One nominal parameter.
 #[derive(Debug, Clone, Copy)]
 pub struct Nuisance {
@@ -19,6 +22,8 @@ pub struct Nuisance {
     /// Step of the finite difference.
     pub step: f64,
     shift: fn(&mut Physics, f64),
+    /// Whether a shift is added; others are logarithms of a ratio, so that scales of all torques together are a line.
+    absolute: bool,
 }
 
 impl Nuisance {
@@ -30,7 +35,7 @@ impl Nuisance {
     /// ```
     #[must_use]
     pub fn prior(&self, shift: f64, ahead: f64) -> (f64, f64, f64) {
-        let tolerance = self.sigma / UNIFORM;
+        let tolerance = self.tolerance();
         let wall = BEYOND * tolerance;
         let flat = 1.0 / (self.sigma * self.sigma);
         if ahead.abs() <= tolerance {
@@ -41,10 +46,27 @@ impl Nuisance {
         (flat * shift + steep * beyond, flat + steep, flat * shift * shift + steep * beyond * beyond)
     }
 
+    /// Up to here a shift is no gap.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.sigma / UNIFORM
+    }
+
+    /// The change that a shift stands for: relative but for those that are added.
+    #[must_use]
+    pub fn change(&self, shift: f64) -> f64 {
+        if self.absolute { shift } else { shift.exp_m1() }
+    }
+
     /// Moves the parameter.
     pub fn shift(&self, physics: &mut Physics, by: f64) {
         (self.shift)(physics, by);
     }
+}
+
+/// Adds to a value, in its logarithm where there is one.
+fn stretch(value: &mut f64, by: f64) {
+    if by.abs() < 0.5 * value.abs() { *value *= (by / *value).exp() } else { *value += by }
 }
 
 macro_rules! relative {
@@ -53,7 +75,8 @@ macro_rules! relative {
             name: $name,
             sigma: UNIFORM * $tolerance,
             step: 0.3 * $tolerance,
-            shift: |$physics: &mut Physics, by: f64| $field *= 1.0 + by,
+            shift: |$physics: &mut Physics, by: f64| $field *= by.exp(),
+            absolute: false,
         }
     };
 }
@@ -64,13 +87,20 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
     let default = tolerance.default_relative;
     let unbalance = &physics.config.unbalance;
     let size = unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6);
-    let added = |name, sigma: f64, shift| Nuisance { name, sigma: UNIFORM * sigma, step: 0.3 * sigma, shift };
+    let added =
+        |name, sigma: f64, shift| Nuisance { name, sigma: UNIFORM * sigma, step: 0.3 * sigma, shift, absolute: true };
     vec![
-        added("friction_level", tolerance.friction_level, |physics, by| physics.friction.level += by),
-        added("bearing viscosity", tolerance.viscous_friction, |physics, by| physics.friction.viscous_level += by),
-        added("unbalance x", tolerance.mass_unbalance * size, |physics, by| physics.config.unbalance.x_kg_m += by),
-        added("unbalance y", tolerance.mass_unbalance * size, |physics, by| physics.config.unbalance.y_kg_m += by),
-        added("accelerometer alignment", default * size, |physics, by| physics.axial_leak_kg_m += by),
+        relative!(tolerance.friction_level, "friction_level", p => p.friction.load_factor),
+        relative!(tolerance.viscous_friction, "bearing viscosity", p => p.friction.viscous_factor),
+        added("unbalance x", tolerance.mass_unbalance * size, |physics, by| {
+            stretch(&mut physics.config.unbalance.x_kg_m, by);
+        }),
+        added("unbalance y", tolerance.mass_unbalance * size, |physics, by| {
+            stretch(&mut physics.config.unbalance.y_kg_m, by);
+        }),
+        added("accelerometers about x", ALIGNMENT_RAD, |physics, by| physics.turned_rad[0] += by),
+        added("accelerometers about y", ALIGNMENT_RAD, |physics, by| physics.turned_rad[1] += by),
+        added("accelerometers about z", ALIGNMENT_RAD, |physics, by| physics.turned_rad[2] += by),
         relative!(tolerance.loop_gain, "loop_gain", p => p.config.servo.gain_nm_per_rad_s),
         relative!(tolerance.motor_lag, "motor_lag", p => p.config.servo.motor_lag_s),
         relative!(tolerance.gyro_damping, "gyro_damping", p => p.config.gyro.damping_nm_s_per_rad),
@@ -87,7 +117,7 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative!(default, "T7", p => p.config.servo.lag_time_constants_s[1]),
         relative!(default, "T8", p => p.config.servo.lag_time_constants_s[2]),
         relative!(default, "T9", p => p.config.servo.lag_time_constants_s[3]),
-        added("pickoff_scale", tolerance.pickoff_scale, |physics, by| physics.measurement.pickoff_scale += by),
-        added("torque_scale", tolerance.torque_scale, |physics, by| physics.measurement.torque_scale += by),
+        relative!(tolerance.pickoff_scale, "pickoff_scale", p => p.measurement.pickoff_factor),
+        relative!(tolerance.torque_scale, "torque_scale", p => p.measurement.torque_factor),
     ]
 }

@@ -21,6 +21,10 @@ pub struct Inputs {
     pub turned_rad: Vec<f64>,
     /// `T_load` under the nominal bearing [N m].
     pub load_nm: Vec<f64>,
+    /// `T_load` by a turn of the accelerometers about x and about y [N m/rad].
+    pub load_by_turn: [Vec<f64>; 2],
+    /// What the mean of `T_load` since the row before is above the line between the rows [N m].
+    pub bulge_nm: Vec<f64>,
 }
 
 impl Inputs {
@@ -28,6 +32,20 @@ impl Inputs {
     pub fn complete(&mut self, bearing: &bearing::Config, begin_rad: f64) {
         let [x, y, z] = &self.accel_mps2;
         self.load_nm = (0..x.len()).map(|k| load_nm(bearing, [x[k], y[k], z[k]])).collect();
+        let step_rad = 1e-3;
+        self.load_by_turn = [[step_rad, 0.0, 0.0], [0.0, step_rad, 0.0]].map(|turn| {
+            let of = |k: usize| load_nm(bearing, turned([x[k], y[k], z[k]], turn)) - self.load_nm[k];
+            (0..x.len()).map(|k| of(k) / step_rad).collect()
+        });
+        let between = |k: usize, share: f64| [x, y, z].map(|axis| axis[k - 1] + share * (axis[k] - axis[k - 1]));
+        let bulge = |k: usize| {
+            let chord = 0.5 * (self.load_nm[k - 1] + self.load_nm[k]);
+            if z[k] * z[k - 1] >= 0.0 {
+                return 2.0 / 3.0 * (load_nm(bearing, between(k, 0.5)) - chord);
+            }
+            (0..8).map(|part| load_nm(bearing, between(k, (f64::from(part) + 0.5) / 8.0))).sum::<f64>() / 8.0 - chord
+        };
+        self.bulge_nm = (0..x.len()).map(|k| if k == 0 { 0.0 } else { bulge(k) }).collect();
         let mut turned = begin_rad;
         let mut last = self.rate_radps.first().copied().unwrap_or(0.0);
         self.turned_rad = self
@@ -72,6 +90,11 @@ impl Inputs {
         inputs.complete(bearing, self.turned_rad.first().copied().unwrap_or(0.0));
         inputs
     }
+}
+
+/// A vector after a small turn about x, y, z.
+pub(crate) fn turned([x, y, z]: [f64; 3], [about_x, about_y, about_z]: [f64; 3]) -> [f64; 3] {
+    [x + about_y * z - about_z * y, y + about_z * x - about_x * z, z + about_x * y - about_y * x]
 }
 
 /// The value `shift` rows after row k, on the line between two rows.

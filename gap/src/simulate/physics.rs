@@ -15,8 +15,8 @@ pub struct Physics {
     pub anisoelasticity: f64,
     /// `k rate cross_rate` [kg m2].
     pub cross_axis_kg_m2: f64,
-    /// Leak of `a_z` into `T_u`, from a tilted accelerometer [kg m].
-    pub axial_leak_kg_m: f64,
+    /// Turn of the accelerometers against the platform about x, y, z [rad].
+    pub turned_rad: [f64; 3],
     /// Spring of the cable [N m/rad].
     pub spring_nm_per_rad: f64,
     /// Bouc-Wen loop of the cable.
@@ -42,12 +42,12 @@ pub struct Physics {
 }
 
 /// Changes of the friction law.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
-    /// `T_load (1 + s)`.
-    pub level: f64,
-    /// `T_visc (1 + s)`.
-    pub viscous_level: f64,
+    /// Of `T_load`.
+    pub load_factor: f64,
+    /// Of `T_visc`.
+    pub viscous_factor: f64,
     /// `T_load (1 + k A_r / g)`.
     pub per_g: f64,
     /// `T_f (1 + a sgn w)`.
@@ -85,18 +85,40 @@ pub struct Ripple {
 }
 
 /// Sensors that only write the log.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
-    /// Relative.
-    pub pickoff_scale: f64,
+    /// Of the pick-off.
+    pub pickoff_factor: f64,
     /// [rad].
     pub pickoff_bias_rad: f64,
-    /// Relative.
-    pub torque_scale: f64,
+    /// Of the torque sensor.
+    pub torque_factor: f64,
     /// [N m].
     pub torque_bias_nm: f64,
     /// Inputs logged late by this [s].
     pub skew_s: f64,
+}
+
+impl Default for Friction {
+    fn default() -> Self {
+        Self {
+            load_factor: 1.0,
+            viscous_factor: 1.0,
+            per_g: 0.0,
+            asymmetry: 0.0,
+            viscous_nm_s: 0.0,
+            quadratic_nm_s2: 0.0,
+            stribeck: None,
+            presliding_rad: 0.0,
+            drift: None,
+        }
+    }
+}
+
+impl Default for Measurement {
+    fn default() -> Self {
+        Self { pickoff_factor: 1.0, pickoff_bias_rad: 0.0, torque_factor: 1.0, torque_bias_nm: 0.0, skew_s: 0.0 }
+    }
 }
 
 impl Physics {
@@ -109,7 +131,7 @@ impl Physics {
             constant_nm: 0.0,
             anisoelasticity: 0.0,
             cross_axis_kg_m2: 0.0,
-            axial_leak_kg_m: 0.0,
+            turned_rad: [0.0; 3],
             spring_nm_per_rad: 0.0,
             hysteresis: None,
             ripple: None,

@@ -3,13 +3,14 @@
 use super::bearing::Viscous;
 use super::chain::{Chain, FULL, INPUTS, PHI, PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
 use super::discrete::{Step, add};
+use super::inputs::turned;
 use super::{Inputs, Physics};
 
 const GRAVITY_MPS2: f64 = 9.806_65;
 /// Longest full step [s].
 const LONGEST_STEP_S: f64 = 1.2e-3;
 /// Short steps in a full one.
-const SHORT: u32 = 4;
+const SHORT: u32 = 16;
 
 /// Where a prediction begins.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,10 +72,10 @@ pub fn predict(physics: &Physics, inputs: &Inputs, begin: &Begin, rows: usize) -
     };
     let sensors = physics.measurement;
     for theta in &mut prediction.gyro_angle_rad {
-        *theta = *theta * (1.0 + sensors.pickoff_scale) + sensors.pickoff_bias_rad;
+        *theta = *theta * sensors.pickoff_factor + sensors.pickoff_bias_rad;
     }
     for torque in &mut prediction.motor_torque_nm {
-        *torque = *torque * (1.0 + sensors.torque_scale) + sensors.torque_bias_nm;
+        *torque = *torque * sensors.torque_factor + sensors.torque_bias_nm;
     }
     prediction
 }
@@ -87,6 +88,7 @@ struct Now {
     cross: f64,
     turned: f64,
     load: f64,
+    bulge: f64,
     time_s: f64,
 }
 
@@ -99,6 +101,7 @@ impl Now {
             cross: line(self.cross, next.cross),
             turned: line(self.turned, next.turned),
             load: line(self.load, next.load),
+            bulge: next.bulge,
             time_s: line(self.time_s, next.time_s),
         }
     }
@@ -146,14 +149,22 @@ impl<'a, const N: usize> Machine<'a, N> {
 
     fn now(&self, k: usize) -> Now {
         let inputs = self.inputs;
-        Now {
-            accel: [0, 1, 2].map(|axis| inputs.accel_mps2[axis][k]),
+        let logged = [0, 1, 2].map(|axis| inputs.accel_mps2[axis][k]);
+        let mut now = Now {
+            accel: logged,
             rate: inputs.rate_radps[k],
             cross: inputs.cross_radps.get(k).copied().unwrap_or(0.0),
             turned: inputs.turned_rad[k],
             load: inputs.load_nm[k],
+            bulge: inputs.bulge_nm[k],
             time_s: inputs.start_s + k as f64 * inputs.period_s,
+        };
+        let turn = self.physics.turned_rad;
+        if turn.iter().any(|angle| angle.abs() > 0.0) {
+            now.accel = turned(logged, turn);
+            now.load += turn[0] * inputs.load_by_turn[0][k] + turn[1] * inputs.load_by_turn[1][k];
         }
+        now
     }
 
     fn run(&self, begin: &Begin, rows: usize) -> Prediction {
@@ -208,15 +219,13 @@ impl<'a, const N: usize> Machine<'a, N> {
                 now.toward(next, f64::from(part) / f64::from(self.full_steps))
             };
             if self.turns(state, &to) {
-                let mut start = from;
                 for short in 1..=SHORT {
                     let end = from.toward(&to, f64::from(short) / f64::from(SHORT));
-                    self.step(state, &start, &end, 1);
+                    self.step(state, &end, 1);
                     self.contact(state);
-                    start = end;
                 }
             } else {
-                self.step(state, &from, &to, 0);
+                self.step(state, &to, 0);
                 self.contact(state);
             }
             from = to;
@@ -234,9 +243,20 @@ impl<'a, const N: usize> Machine<'a, N> {
             || builds_up
             || state.stop != 0
             || state.x[THETA].abs() > 0.95 * self.physics.config.gyro.stop_angle_rad
+            || self.motor_bends(state)
     }
 
-    fn step(&self, state: &mut Running<N>, from: &Now, to: &Now, short: usize) {
+    /// Whether the motor's torque is near a corner of its characteristic.
+    fn motor_bends(&self, state: &Running<N>) -> bool {
+        let (dead_nm, limit_nm) = (self.physics.dead_zone_nm, self.physics.limit_nm.unwrap_or(f64::MAX));
+        if dead_nm <= 0.0 && limit_nm >= f64::MAX {
+            return false;
+        }
+        let command = self.command_nm(&state.x).abs();
+        command < 2.0 * dead_nm || command > 0.95 * limit_nm
+    }
+
+    fn step(&self, state: &mut Running<N>, to: &Now, short: usize) {
         let step = if state.stop == 0 { &self.free[short] } else { &self.held[short] };
         let mut x = step.free(&state.x, &state.u);
         let mut guess = x;
@@ -268,7 +288,9 @@ impl<'a, const N: usize> Machine<'a, N> {
             add(&mut x, &step.start[0], mean - state.friction);
             add(&mut x, &step.end[0], mean - friction);
         }
-        let _ = from;
+        let bulge = to.bulge * self.physics.friction.load_factor * zeta;
+        add(&mut x, &step.start[0], bulge);
+        add(&mut x, &step.end[0], bulge);
         *state = Running {
             x,
             u: [others + friction, float_nm, seen],
@@ -335,11 +357,11 @@ impl<'a, const N: usize> Machine<'a, N> {
             return 0.0;
         }
         let friction = &self.physics.friction;
-        let mut load = now.load * (1.0 + friction.level);
+        let mut load = now.load * friction.load_factor;
         if friction.per_g != 0.0 {
             load *= 1.0 + friction.per_g * now.accel[0].hypot(now.accel[1]) / GRAVITY_MPS2;
         }
-        let mut level = load + self.viscous.torque_nm(w.abs()) * (1.0 + friction.viscous_level);
+        let mut level = load + self.viscous.torque_nm(w.abs()) * friction.viscous_factor;
         if let Some([excess, rate]) = friction.stribeck {
             level += excess * (-(w / rate) * (w / rate)).exp();
         }
@@ -352,14 +374,13 @@ impl<'a, const N: usize> Machine<'a, N> {
     /// Torques on the gimbal but for the bearings', and what the motor fails to give.
     fn others(&self, now: &Now, x: &[f64; N], hysteresis: f64) -> f64 {
         let physics = self.physics;
-        let [ax, ay, az] = now.accel;
+        let [ax, ay, _] = now.accel;
         let unbalance = &physics.config.unbalance;
         let w = now.rate - x[PHI_RATE];
         let rel = now.turned - x[PHI];
         let mut torque = unbalance.x_kg_m * ay - unbalance.y_kg_m * ax
             + physics.constant_nm
             + physics.anisoelasticity * ax * ay
-            + physics.axial_leak_kg_m * az
             + physics.cross_axis_kg_m2 * now.rate * now.cross
             + physics.spring_nm_per_rad * rel
             + (physics.friction.viscous_nm_s + physics.friction.quadratic_nm_s2 * w.abs()) * w;

@@ -1,0 +1,63 @@
+//! What a fit leaves: excess of the whitened residual over noise, where it stands out most.
+//!
+//! ```text
+//! z = sum (p - 1) n / sqrt(2 sum n)        p the power of a cell, n its degrees of freedom
+//! ```
+//!
+//! Cells are bands of frequency, over the whole log and in windows of it; each channel by itself.
+
+use realfft::RealFftPlanner;
+
+use crate::fit::Problem;
+
+/// Rows of a window.
+const WINDOW: usize = 2048;
+/// Edges of the bands [Hz].
+const EDGES_HZ: [f64; 8] = [0.0, 1.0, 2.5, 6.0, 15.0, 40.0, 110.0, 300.0];
+/// Standard deviations that the largest of the windows exceeds by chance.
+const BY_CHANCE: f64 = 4.0;
+
+/// The largest excess [standard deviations].
+pub(crate) fn left_over(problem: &Problem, whitened: &[f64]) -> f64 {
+    let channels = problem.record.channels.len();
+    let valid = &problem.whitener.valid;
+    let period_s = problem.record.inputs.period_s;
+    (0..channels)
+        .map(|channel| {
+            let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
+            excess(&series, valid, period_s)
+        })
+        .fold(0.0, f64::max)
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
+fn excess(series: &[f64], valid: &[bool], period_s: f64) -> f64 {
+    let length = WINDOW.min(series.len());
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let mut lines = transform.make_output_vec();
+    let step_hz = 1.0 / (length as f64 * period_s);
+    let places: Vec<usize> = EDGES_HZ.iter().map(|hz| ((hz / step_hz).round() as usize).clamp(1, length / 2)).collect();
+    let (mut sums, mut counts) = (vec![0.0; EDGES_HZ.len() - 1], vec![0.0; EDGES_HZ.len() - 1]);
+    let mut local: f64 = 0.0;
+    for start in (0..=series.len() - length).step_by(length) {
+        let there = valid[start..start + length].iter().filter(|valid| **valid).count() as f64 / length as f64;
+        if there < 0.8 {
+            continue;
+        }
+        let mut segment = series[start..start + length].to_vec();
+        if transform.process(&mut segment, &mut lines).is_err() {
+            continue;
+        }
+        for band in 0..sums.len() {
+            let range = places[band]..places[band + 1];
+            let n = 2.0 * range.len() as f64;
+            let power: f64 = lines[range].iter().map(|line| line.norm_sqr() / (length as f64 * there)).sum();
+            let above = 2.0 * power - n;
+            sums[band] += above;
+            counts[band] += n;
+            local = local.max(above / (2.0 * n).max(1.0).sqrt());
+        }
+    }
+    let whole = sums.iter().zip(&counts).map(|(sum, count)| sum / (2.0 * count).max(1.0).sqrt()).fold(0.0, f64::max);
+    whole.max(local - BY_CHANCE)
+}
