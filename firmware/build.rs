@@ -17,11 +17,12 @@ struct Board {
     flash: Region,
     ram: Region,
     counter: Counter,
-    watchdog: Option<Watchdog>,
+    watchdog: Option<Peripheral>,
+    uart: Option<Peripheral>,
 }
 
 #[derive(Deserialize)]
-struct Watchdog {
+struct Peripheral {
     address: u32,
 }
 
@@ -44,11 +45,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var("OUT_DIR")?);
     write_vectors(&out)?;
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
-        return write_constants(&out, "host", 1_000_000, None, u32::MAX);
+        return write_constants(&out, "host", 1_000_000, [None; 2], u32::MAX);
     }
     let target = env::var("TARGET")?;
     let (name, board) = choose(&target)?;
-    write_constants(&out, &name, board.counter.hz, board.watchdog.as_ref(), board.ram.length_bytes)?;
+    let peripherals = [board.watchdog.as_ref(), board.uart.as_ref()];
+    write_constants(&out, &name, board.counter.hz, peripherals, board.ram.length_bytes)?;
     link(&out, &target, &board)
 }
 
@@ -75,16 +77,19 @@ fn write_constants(
     out: &Path,
     name: &str,
     counter_hz: u32,
-    watchdog: Option<&Watchdog>,
+    peripherals: [Option<&Peripheral>; 2],
     ram_bytes: u32,
 ) -> Result<(), Box<dyn Error>> {
     let ram_bytes = thousands(ram_bytes);
     let counter_hz = thousands(counter_hz);
-    let watchdog = watchdog.map_or("None".into(), |watchdog| format!("Some({})", grouped(watchdog.address)));
+    let [watchdog, uart] = peripherals.map(|peripheral| {
+        peripheral.map_or("None".into(), |peripheral| format!("Some({})", grouped(peripheral.address)))
+    });
     let text = format!(
         "/// Name of the board: its file in `boards/`.\npub const NAME: &str = \"{name}\";\n\
          /// Rate of the instruction counter in virtual time [1/s].\npub const COUNTER_HZ: u32 = {counter_hz};\n\
          /// Base address of the CMSDK watchdog, if the board has one.\npub const WATCHDOG: Option<u32> = {watchdog};\n\
+         /// Base address of the CMSDK UART, if the board has one.\npub const UART: Option<u32> = {uart};\n\
          /// Memory for data and stack [bytes].\npub const RAM_BYTES: u32 = {ram_bytes};\n"
     );
     Ok(fs::write(out.join("board.rs"), text)?)

@@ -7,10 +7,12 @@
 
 mod blind;
 mod convert;
+mod doctor;
 mod estimate;
 mod exit;
 mod figures;
 mod gap;
+mod hil;
 mod interrupt;
 mod plot;
 mod progress;
@@ -38,12 +40,16 @@ enum Command {
     Blind(blind::Args),
     /// Turns a foreign CSV file into a log: names, units, axes, one constant rate.
     Convert(convert::Args),
+    /// Looks for what hardware in the loop needs, and says how to mend what is missing.
+    Doctor(doctor::Args),
     /// Attitude error with its bound and the INS correction, as the flight computer has them, from a log.
     Estimate(estimate::Args),
     /// Redraws the paper's figures and checks its numbers.
     Figures(figures::Args),
     /// Diagnoses the gap between a model and logs: where, which effect, how far it shrinks.
     Gap(gap::Args),
+    /// Flies a flight computer in the loop with the simulated platform.
+    Hil(hil::Args),
     /// Runs a log through the model; without one, the paper's two 20 g cases.
     Run(run::Args),
     /// Runs parameters over ranges and tolerances.
@@ -59,9 +65,11 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Some(Command::Blind(args)) => blind::blind(args),
         Some(Command::Convert(args)) => convert::convert(args),
+        Some(Command::Doctor(args)) => doctor::doctor(args),
         Some(Command::Estimate(args)) => estimate::estimate(args),
         Some(Command::Figures(args)) => figures::figures(args),
         Some(Command::Gap(args)) => gap::gap(args),
+        Some(Command::Hil(args)) => hil::hil(args),
         Some(Command::Run(args)) => run::run(args),
         Some(Command::Sweep(args)) => sweep::sweep(args),
         None => run::run_default(&cli.run),

@@ -279,6 +279,10 @@ impl<N: Number> Computer<N> {
         self.dump = None;
         self.last_estimate = None;
         if whole {
+            // In place: a new one would be built on the stack first.
+            self.receiver = Receiver::default();
+            self.answers.clear();
+            self.sequence = 0;
             self.axis = None;
             self.parts = 0;
             self.tick = None;

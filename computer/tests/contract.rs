@@ -329,3 +329,25 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn regress_the_corpus_of_the_wire_does_no_harm() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../wire/tests/corpus");
+    let streams: Vec<Vec<u8>> = std::fs::read_dir(folder)
+        .expect("a corpus")
+        .map(|entry| std::fs::read(entry.expect("an entry").path()).expect("read"))
+        .collect();
+    assert!(streams.len() > 10);
+    // Each by itself, and each cut anywhere behind each other.
+    for first in &streams {
+        for second in &streams {
+            let mut bench = Bench::started();
+            bench.computer.receive(&first[..first.len() / 2]);
+            bench.computer.receive(second);
+            bench.computer.receive(&[0]);
+            bench.answers();
+            let mode = bench.clock().mode;
+            assert!(matches!(mode, Mode::Running | Mode::Ready | Mode::Empty), "{mode:?}");
+        }
+    }
+}

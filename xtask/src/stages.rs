@@ -51,6 +51,7 @@ impl Stages {
             Stage { name: "target-log", run: board::log::check },
             Stage { name: "target-examples", run: board::examples::check },
             Stage { name: "c-interface", run: board::c::check },
+            Stage { name: "target-hil", run: board::hil::check },
             Stage { name: "target-gates", run: board::gates::check },
             Stage { name: "target-stack", run: board::stack::check },
             Stage { name: "target-budget", run: board::budget::check },

@@ -66,6 +66,12 @@ pub(crate) fn step_with_stack_sizes(board: &Board) -> Result<PathBuf> {
     Ok(folder.join(&board.target).join("release/step"))
 }
 
+/// Folder of the programs for a bench: `hil`, `hil_fifo`, and `wire`, which counts what frames cost.
+pub(crate) fn hil(board: &Board) -> Result<PathBuf> {
+    build(board, &["hil", "hil_fifo", "wire"], None)?;
+    Ok(folder(board))
+}
+
 fn folder(board: &Board) -> PathBuf {
     target_dir().join("boards").join(&board.name)
 }

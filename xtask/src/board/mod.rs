@@ -11,6 +11,7 @@ mod emulator;
 pub(crate) mod examples;
 pub(crate) mod flight;
 pub(crate) mod gates;
+pub(crate) mod hil;
 mod image;
 pub(crate) mod lints;
 pub(crate) mod log;

@@ -48,6 +48,7 @@ const UNITS: &[&str] = &[
     "1",
     "pixels",
     "rows",
+    "ticks",
     "instructions",
 ];
 

@@ -1,0 +1,130 @@
+//! A run as it goes: a bar and a line of figures on a terminal, and lines of a picture for the report.
+
+use std::fmt::Write;
+use std::io::IsTerminal;
+
+use gimbal_bench::run::{self, Watch};
+use gimbal_bench::scenario::Scenario;
+use gimbal_servo::paper::DEGREE_RAD;
+use gimbal_wire::{Estimate, Mode};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::interrupt;
+use crate::plot::Envelope;
+
+/// Ticks between two looks at the terminal.
+const EVERY: u32 = 50;
+/// Stop of the paper's gyro, for the margin shown.
+const STOP_RAD: f64 = 0.5 * DEGREE_RAD;
+
+/// What is kept of a run for the report.
+pub(crate) struct Live {
+    bar: ProgressBar,
+    pub(crate) truth: Envelope,
+    pub(crate) estimate: Envelope,
+    pub(crate) error: Envelope,
+    pub(crate) bound: Envelope,
+    pub(crate) under: Envelope,
+    pub(crate) theta: Envelope,
+    pub(crate) rate: Envelope,
+    pub(crate) accel: Envelope,
+    pub(crate) torque: Envelope,
+    pub(crate) not_running: Envelope,
+}
+
+impl Live {
+    pub(crate) fn new(scenario: &Scenario) -> Self {
+        let bar = if std::io::stderr().is_terminal() {
+            let bar = ProgressBar::new(0);
+            if let Ok(style) = ProgressStyle::with_template("{prefix} {bar:30} {percent:>3} %  {eta} left\n{msg}") {
+                bar.set_style(style);
+            }
+            bar.set_prefix(scenario.name.clone());
+            bar
+        } else {
+            ProgressBar::hidden()
+        };
+        let line = Envelope::new;
+        Self {
+            bar,
+            truth: line(),
+            estimate: line(),
+            error: line(),
+            bound: line(),
+            under: line(),
+            theta: line(),
+            rate: line(),
+            accel: line(),
+            torque: line(),
+            not_running: line(),
+        }
+    }
+
+    /// Clears the terminal.
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn show(&self, live: &run::Live) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        self.bar.set_length(u64::from(live.ticks));
+        self.bar.set_position(u64::from(live.moment.tick));
+        let (truth, row) = (&live.moment.truth, &live.moment.row);
+        let mut line = format!(
+            "{:8.2} s  a_y {:7.1} m/s2  rate {:6.3} rad/s  phi {:8.1} urad  theta {:7.2} mrad, {:3.0} % to the stop",
+            f64::from(live.moment.tick) * live.period_s,
+            row.accel_y_mps2,
+            row.vehicle_rate_radps,
+            1e6 * truth.gimbal_angle_rad,
+            1e3 * truth.gyro_angle_rad,
+            100.0 * (1.0 - truth.gyro_angle_rad.abs() / STOP_RAD).max(0.0),
+        );
+        let _ = match live.estimate {
+            Some(estimate) => write!(
+                line,
+                "\n           estimate {:8.1} urad +- {:6.1}, {}",
+                1e6 * estimate.gimbal_angle_rad,
+                1e6 * estimate.bound_rad,
+                estimate.mode.name()
+            ),
+            None => write!(line, "\n           no estimate"),
+        };
+        let bits: Vec<&str> = live.bits.keys().copied().collect();
+        let _ = write!(line, "   {}", bits.join(" "));
+        self.bar.set_message(line);
+    }
+
+    fn keep(&mut self, live: &run::Live) {
+        let time_s = f64::from(live.moment.tick) * live.period_s;
+        let truth = &live.moment.truth;
+        self.truth.push(time_s, truth.gimbal_angle_rad);
+        self.theta.push(time_s, truth.gyro_angle_rad);
+        self.torque.push(time_s, truth.motor_torque_nm);
+        self.rate.push(time_s, live.moment.row.vehicle_rate_radps);
+        self.accel.push(time_s, live.moment.row.accel_y_mps2);
+        let running = live.estimate.filter(|estimate: &&Estimate| estimate.mode == Mode::Running);
+        self.not_running.push(time_s, f64::from(u8::from(running.is_none())));
+        if let Some(estimate) = running {
+            let (angle, bound) = (f64::from(estimate.gimbal_angle_rad), 2.0 * f64::from(estimate.bound_rad));
+            self.estimate.push(time_s, angle);
+            self.error.push(time_s, angle - truth.gimbal_angle_rad);
+            // The first rows know nothing, and would hide all the others.
+            if time_s >= 0.2 {
+                self.bound.push(time_s, bound);
+                self.under.push(time_s, -bound);
+            }
+        }
+    }
+}
+
+impl Watch for Live {
+    fn tick(&mut self, live: &run::Live) -> bool {
+        self.keep(live);
+        if live.moment.tick.is_multiple_of(EVERY) {
+            self.show(live);
+        }
+        !interrupt::raised()
+    }
+}
