@@ -188,7 +188,9 @@ fn contract_a_silent_computer_is_not_waited_for_for_ever() {
     bench.write("short.toml", SHORT);
     let served = serve(Ends::Silent(60_000));
     let begun = Instant::now();
-    let told = bench.fail(3, &["hil", "short.toml", "--connect", &served.address]);
+    let output = bench.run(&["hil", "short.toml", "--connect", &served.address]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{told}");
     assert!(told.contains("no answer for 3000 ms"), "{told}");
     assert!(begun.elapsed() < Duration::from_secs(30));
 }
