@@ -123,9 +123,9 @@ impl<'a> Problem<'a> {
         }
         let mut impulse = impulse(&base, record);
         scale(std::slice::from_mut(&mut impulse), &scaled);
-        let turning = turning(&base, record, &nominal);
+        let (turning, share) = turning(&base, record, &nominal);
         let period_s = record.inputs.period_s;
-        let turning_noise = turning_noise(&base, record, &nominal);
+        let turning_noise = turning_noise(&base, record, &nominal) * share.sqrt();
         let whitener =
             Whitener::new(&rest, &valid, Loop { impulse: &impulse, turning: &turning, turning_noise, period_s });
         let whitened: Vec<Vec<f64>> = raw_columns.into_par_iter().map(|column| whitener.apply(&column)).collect();
@@ -338,17 +338,21 @@ fn impulse(base: &Physics, record: &Record) -> Signals {
     record.channels.iter().map(|channel| predicted(channel.signal, &run).to_vec()).collect()
 }
 
-/// Rows at which friction turns around, with what follows.
-fn turning(base: &Physics, record: &Record, nominal: &Prediction) -> Vec<bool> {
+/// Rows at which friction turns around, with what follows; and the share of them in which the noise of the rate acts.
+fn turning(base: &Physics, record: &Record, nominal: &Prediction) -> (Vec<bool>, f64) {
     let slip = base.config.bearing.slip_rate_radps;
-    let mut wait = 0_usize;
+    let (mut wait, mut inside) = (0_usize, 0.0);
     let rates = record.inputs.rate_radps.iter().zip(&nominal.gimbal_rate_radps);
-    rates
+    let turning: Vec<bool> = rates
         .map(|(vehicle, gimbal)| {
-            wait = if (vehicle - gimbal).abs() < 2.0 * slip { AFTER_TURNING } else { wait.saturating_sub(1) };
+            let turns = (vehicle - gimbal).abs() < slip;
+            inside += f64::from(u8::from(turns));
+            wait = if turns { AFTER_TURNING } else { wait.saturating_sub(1) };
             wait > 0
         })
-        .collect()
+        .collect();
+    let all = turning.iter().filter(|turning| **turning).count();
+    (turning, inside / all.max(1) as f64)
 }
 
 /// Torque that the noise of the logged rate makes on the slope of the friction law, over that of the impulse.
@@ -363,7 +367,7 @@ fn turning_noise(base: &Physics, record: &Record, nominal: &Prediction) -> f64 {
 /// Rate after the impulse [rad/s].
 const IMPULSE_RADPS: f64 = 1e-3;
 /// Rows for which the loop remembers a disturbance.
-const AFTER_TURNING: usize = 40;
+const AFTER_TURNING: usize = 400;
 
 /// Rms of white noise from third differences, whatever else there is.
 fn rough(values: &[f64], valid: &[bool]) -> f64 {

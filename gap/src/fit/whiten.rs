@@ -21,6 +21,8 @@ const SEGMENT: usize = 4096;
 /// Bands in which power is taken, and steps of the fit.
 const BANDS: usize = 36;
 const STEPS: usize = 120;
+/// Least power of noise, over the white noise that the samples themselves show.
+const LEAST_POWER: f64 = 1e-3;
 /// Corners that are tried [Hz].
 const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
 
@@ -96,7 +98,7 @@ impl Whitener {
             let own = bands.fit(&shape);
             let gain = |more: f64| -> Vec<f64> {
                 let of = |line: usize| own.power(line as f64 * step_hz, response[line]) + more * response[line];
-                (0..=plans.length / 2).map(|line| 1.0 / of(line).max(1e-300).sqrt()).collect()
+                (0..=plans.length / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect()
             };
             gains.push(gain(0.0));
             turning_gains.push(gain(behind.turning_noise * behind.turning_noise));

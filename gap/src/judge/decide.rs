@@ -19,8 +19,8 @@ const FORMULATION: f64 = 0.01;
 const SCALE: f64 = 2.0;
 const SCALE_SHARE: f64 = 1e-5;
 /// Standard deviations that what is left may stand out by, and the spread of that limit.
-const LEFT_OVER: f64 = 18.0;
-const LEFT_OVER_SCALE: f64 = 4.0;
+const LEFT_OVER: f64 = 11.0;
+const LEFT_OVER_SCALE: f64 = 2.0;
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
 /// Least share of the gap that an effect takes away.

@@ -7,7 +7,7 @@ use crate::simulate::Physics;
 /// Standard deviation over tolerance within the tolerance, where nearly every value is as good as any other.
 const UNIFORM: f64 = 0.7;
 /// The same for what lies beyond it.
-const BEYOND: f64 = 0.25;
+const BEYOND: f64 = 0.12;
 
 /// Alignment of the accelerometers with the platform's axes [rad].
 const ALIGNMENT_RAD: f64 = 1e-3;

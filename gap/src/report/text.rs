@@ -27,13 +27,13 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         Verdict::Explained => writeln!(out, "Explained by {}.", named.join(" and ")),
         Verdict::PartlyExplained => writeln!(
             out,
-            "Partly explained by {}; something else remains ({:.0} times the noise, 0.3 to 20 Hz).",
+            "Partly explained by {}; something else remains (it stands out by {:.0} standard deviations).",
             named.join(" and "),
             decision.left_over[1]
         ),
         Verdict::Unexplained => writeln!(
             out,
-            "A gap that no effect of the library explains ({:.0} times the noise, 0.3 to 20 Hz).",
+            "A gap that no effect of the library explains (it stands out by {:.0} standard deviations).",
             decision.left_over[0]
         ),
         Verdict::CannotTell => writeln!(out, "Cannot tell: {} or one of these:", named.join(" and ")),

@@ -46,6 +46,11 @@ impl Viscous {
         Self { slow_nm: slow * size, fast_nm: fast * size * speed.powf(2.0 / 3.0), break_radps: BREAK_CST_RPM / speed }
     }
 
+    /// Where one law ends and the other begins [rad/s].
+    pub(crate) fn break_radps(&self) -> f64 {
+        self.break_radps
+    }
+
     pub(crate) fn torque_nm(&self, speed_radps: f64) -> f64 {
         if speed_radps <= self.break_radps { self.slow_nm } else { self.fast_nm * speed_radps.powf(2.0 / 3.0) }
     }

@@ -325,6 +325,13 @@ impl<'a, const N: usize> Machine<'a, N> {
             };
             (area(high) - area(low)) / (high - low)
         });
+        let mean = mean.or_else(|| {
+            // the two viscous laws do not meet
+            let edge = self.viscous.break_radps();
+            let crosses = (low < edge && high > edge) || (low < -edge && high > -edge);
+            let share = (edge - state.w.abs()) / (w.abs() - state.w.abs());
+            crosses.then(|| state.friction + (1.0 - share) * (friction - state.friction))
+        });
         (friction, mean, zeta)
     }
 

@@ -1,0 +1,145 @@
+//! The diagnosis on logs from the reference plant.
+
+#[path = "../examples/corpus/mod.rs"]
+mod corpus;
+
+use corpus::{Case, Excitation, as_log, simulate};
+use gimbal_gap::report::json;
+use gimbal_gap::{Diagnosis, diagnose};
+use gimbal_log::{Column, Log};
+use gimbal_model_file::ModelFile;
+use gimbal_plant::Effect;
+use serde_json::Value;
+
+const SECONDS: f64 = 20.0;
+
+fn log_with(excitation: Excitation, effects: &[(&'static str, Vec<f64>)]) -> Log {
+    let case = Case { seed: 23, excitation, seconds: SECONDS, effects: effects.to_vec(), drift: 0.6, noise: 1.0 };
+    as_log(&simulate(&case))
+}
+
+fn typical(name: &'static str) -> (&'static str, Vec<f64>) {
+    (name, Effect::from_name(name).expect("an effect of the table").typical())
+}
+
+fn report(diagnosis: &Diagnosis) -> Value {
+    json(diagnosis, "log.csv", "consistent")
+}
+
+fn names(diagnosis: &Diagnosis) -> Vec<&'static str> {
+    diagnosis.decision.iter().flat_map(|decision| decision.found.iter().map(|found| found.effect)).collect()
+}
+
+#[test]
+fn a_platform_inside_its_tolerance_has_no_gap() {
+    for excitation in Excitation::ALL {
+        let diagnosis = diagnose(&log_with(excitation, &[]), &ModelFile::default());
+        assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{excitation:?}: {:?}", names(&diagnosis));
+        assert!(names(&diagnosis).is_empty());
+    }
+}
+
+#[test]
+fn an_effect_of_each_block_is_named_with_its_size() {
+    for name in ["viscous_friction", "cable_spring", "loop_gain", "gyro_damping", "flexible_mode", "time_skew"] {
+        let effect = typical(name);
+        let log = log_with(Excitation::Manoeuvre, std::slice::from_ref(&effect));
+        let diagnosis = diagnose(&log, &ModelFile::default());
+        let found = &diagnosis.decision.as_ref().expect("a decision").found;
+        let found = found.iter().find(|found| found.effect == name);
+        let found = found.unwrap_or_else(|| panic!("{name}: {:#}", report(&diagnosis)["effects"]));
+        let (value, error) = (found.values[0], found.errors[0]);
+        assert!(
+            (value - effect.1[0]).abs() < 5.0 * error + 0.05 * effect.1[0].abs(),
+            "{name}: {value} +- {error}, in truth {}",
+            effect.1[0]
+        );
+        let block = Effect::from_name(name).expect("an effect").block().to_string();
+        let reported = report(&diagnosis);
+        let own = reported["effects"].as_array().expect("effects").iter().find(|effect| effect["name"] == name);
+        assert_eq!(own.expect("the effect")["block"], block.as_str());
+    }
+}
+
+#[test]
+fn two_effects_at_once_are_both_named() {
+    let effects = [typical("cable_spring"), typical("stribeck")];
+    let diagnosis = diagnose(&log_with(Excitation::Manoeuvre, &effects), &ModelFile::default());
+    let mut found = names(&diagnosis);
+    found.sort_unstable();
+    assert_eq!(found, ["cable_spring", "stribeck"]);
+}
+
+#[test]
+fn the_report_keeps_its_schema() {
+    let diagnosis = diagnose(&log_with(Excitation::RateTable, &[typical("viscous_friction")]), &ModelFile::default());
+    let report = report(&diagnosis);
+    assert_eq!(report["schema"], "gimbal-gap/1");
+    for key in ["blocks", "signals", "spans", "regimes", "bands"] {
+        assert!(report["where"][key].is_array(), "where.{key}");
+    }
+    for (list, keys) in [
+        ("effects", &["name", "block", "probability", "parameters", "removes"][..]),
+        ("alternatives", &["effects", "probability", "told_apart_by"][..]),
+    ] {
+        for entry in report[list].as_array().expect(list) {
+            keys.iter().for_each(|key| assert!(!entry[*key].is_null(), "{list}.{key}"));
+        }
+    }
+    for entry in report["shrink"]["signals"].as_array().expect("signals") {
+        for key in ["name", "unit", "before", "after", "noise_floor", "reduction_percent", "ci95_percent"] {
+            assert!(!entry[key].is_null(), "shrink.signals.{key}");
+        }
+        assert!(entry["after"].as_f64() < entry["before"].as_f64());
+    }
+    assert!(report["shrink"]["velocity_error_mps"]["before"].is_number());
+    assert!(report["unknown_probability"].is_number() && report["notes"].is_array());
+    let decision = diagnosis.decision.expect("a decision");
+    let sum: f64 = decision.ranking.iter().map(|set| set.probability).sum::<f64>() + decision.unknown_probability;
+    assert!((sum - 1.0).abs() < 1e-6, "probabilities sum to {sum}");
+}
+
+#[test]
+fn time_origin_and_columns_that_are_not_needed_change_nothing() {
+    let log = log_with(Excitation::Manoeuvre, &[typical("cable_spring")]);
+    let mut moved = log.clone();
+    let later: Vec<f64> = log.column(Column::Time).expect("time").iter().map(|time| time + 1234.5).collect();
+    moved.set(Column::Time, later);
+    let mut without = Log::default();
+    without.time.period_s = 1e-3;
+    for column in [
+        Column::MotorTorque,
+        Column::GyroAngle,
+        Column::VehicleRate,
+        Column::AccelZ,
+        Column::AccelY,
+        Column::AccelX,
+        Column::Time,
+    ] {
+        without.set(column, log.column(column).expect("a column").to_vec());
+    }
+    let [own, moved, without] = [log, moved, without].map(|log| names(&diagnose(&log, &ModelFile::default())));
+    assert!(own.contains(&"cable_spring"));
+    assert_eq!(own, moved);
+    assert_eq!(own, without);
+}
+
+#[test]
+fn wrong_data_are_named_and_no_effect_is_invented() {
+    let log = log_with(Excitation::Manoeuvre, &[]);
+    let theta = log.column(Column::GyroAngle).expect("theta").to_vec();
+    let spoiled = |change: &dyn Fn(f64) -> f64| {
+        let mut other = log.clone();
+        other.set(Column::GyroAngle, theta.iter().map(|theta| change(*theta)).collect());
+        other
+    };
+    for (what, log) in [
+        ("degrees", spoiled(&|theta| theta.to_degrees())),
+        ("sign", spoiled(&|theta| -theta)),
+        ("stuck", spoiled(&|_| 1e-3)),
+    ] {
+        let diagnosis = diagnose(&log, &ModelFile::default());
+        assert!(names(&diagnosis).is_empty(), "{what}: {:?}", names(&diagnosis));
+        assert!(!diagnosis.record.faults.is_empty(), "{what}");
+    }
+}
