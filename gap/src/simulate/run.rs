@@ -330,7 +330,7 @@ impl<'a, const N: usize> Machine<'a, N> {
             let edge = self.viscous.break_radps();
             let crosses = (low < edge && high > edge) || (low < -edge && high > -edge);
             let share = (edge - state.w.abs()) / (w.abs() - state.w.abs());
-            crosses.then(|| state.friction + (1.0 - share) * (friction - state.friction))
+            crosses.then_some(state.friction + (1.0 - share) * (friction - state.friction))
         });
         (friction, mean, zeta)
     }
