@@ -76,6 +76,8 @@ pub struct Batch<'a, const L: usize> {
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 struct Others<const L: usize> {
+    gimbal_rate: [f32; L],
+    disturbance_torque: [f32; L],
     motor_torque: [f32; L],
     friction_torque: [f32; L],
     unbalance_torque: [f32; L],
@@ -124,12 +126,14 @@ impl<'a, const L: usize> Batch<'a, L> {
             course: Course::new(),
             sums: Sums::new(),
             others: Others {
+                gimbal_rate: [0.0; L],
+                disturbance_torque: [0.0; L],
                 motor_torque: [0.0; L],
                 friction_torque: [0.0; L],
                 unbalance_torque: [0.0; L],
-                stop_change_age: [0.0; L],
+                stop_change_age: states.map(|state| state.stop_change_age),
                 stop: states.map(|state| state.regime.stop()),
-                faults: [Faults::NONE; L],
+                faults: states.map(|state| state.faults),
             },
             offset: states.map(|state| state.offset),
             lasting: states.map(|state| state.lasting),
@@ -148,6 +152,8 @@ impl<'a, const L: usize> Batch<'a, L> {
         let mut state = self.rest[lane];
         self.memories[usize::from(self.is_second)].get(lane, &mut state);
         self.sums.complete(lane, &mut state.ins);
+        state.stop_change_age = self.others.stop_change_age[lane];
+        state.faults = self.others.faults[lane];
         state
     }
 
@@ -203,12 +209,12 @@ impl<'a, const L: usize> Batch<'a, L> {
         let memory = &self.memories[usize::from(self.is_second)];
         Output {
             gimbal_angle_rad: &memory.gimbal_angle,
-            gimbal_rate_radps: &memory.gimbal_rate,
+            gimbal_rate_radps: &self.others.gimbal_rate,
             gyro_angle_rad: &memory.gyro_angle,
             motor_torque_nm: &self.others.motor_torque,
             friction_torque_nm: &self.others.friction_torque,
             unbalance_torque_nm: &self.others.unbalance_torque,
-            disturbance_torque_nm: &memory.torque,
+            disturbance_torque_nm: &self.others.disturbance_torque,
             relative_rate_radps: &memory.relative_rate,
             stop: &self.others.stop,
             stop_change_age: &self.others.stop_change_age,
@@ -226,6 +232,8 @@ impl<const L: usize> Others<L> {
     }
 
     fn put(&mut self, lane: usize, output: &crate::Output<f32>) {
+        self.gimbal_rate[lane] = output.gimbal_rate_radps;
+        self.disturbance_torque[lane] = output.disturbance_torque_nm;
         self.motor_torque[lane] = output.motor_torque_nm;
         self.friction_torque[lane] = output.friction_torque_nm;
         self.unbalance_torque[lane] = output.unbalance_torque_nm;

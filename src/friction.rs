@@ -11,7 +11,6 @@
 //! the zone within the period spends equal times on either side of zero in it.
 
 use crate::number::Number;
-use crate::row::ScaledRow;
 use crate::units::Units;
 
 /// The clamp.
@@ -19,15 +18,16 @@ use crate::units::Units;
 pub(crate) struct Law<N: Number> {
     /// `w_s`.
     pub(crate) slip_rate: N,
-    /// `1 / w_s`.
-    pub(crate) steepness: ScaledRow<N, 1>,
+    /// `1 / w_s`, of rates times `2^steepness_shift`, halved.
+    pub(crate) steepness: N::Coef,
+    pub(crate) steepness_shift: u32,
 }
 
 /// A period that starts in the clamp's zone: `w(1) = w_s level / stiffness` if it ends there, too.
 #[derive(Clone, Copy)]
 pub(crate) struct Zone<N> {
-    /// The clamp at the start.
-    here: N,
+    /// Half of the clamp at the start.
+    half_here: N,
     level: N,
     stiffness: N,
 }
@@ -42,15 +42,18 @@ impl<N: Number> Zone<N> {
     /// m, if it does.
     #[inline(always)]
     pub(crate) fn mean(&self) -> N {
-        self.here.half() + self.level.ratio(self.stiffness).half()
+        self.half_here + self.level.ratio(self.stiffness).half()
     }
 }
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(slip_rate_radps: f64, units: &Units) -> Self {
+        // A rate in the zone times this still fits.
+        let shift = (units.rate - N::exponent(slip_rate_radps)).max(0);
         Self {
             slip_rate: N::quantise(slip_rate_radps, units.rate),
-            steepness: ScaledRow::build([1.0 / slip_rate_radps], [units.rate], 0),
+            steepness: N::coef(N::rescaled(0.5 / slip_rate_radps, units.rate - shift)),
+            steepness_shift: shift.unsigned_abs(),
         }
     }
 
@@ -62,25 +65,26 @@ impl<N: Number> Law<N> {
         } else if rate <= -self.slip_rate {
             -N::ONE
         } else {
-            self.steepness.times(rate)
+            let half = self.half_part(rate);
+            half + half
         }
+    }
+
+    /// `w / (2 w_s)` within the zone.
+    #[inline(always)]
+    fn half_part(&self, rate: N) -> N {
+        N::head(self.steepness * rate.times_power(self.steepness_shift))
     }
 
     /// m, for the rate `start` at the start of the period, `free_end` at its end without friction, and b.
     #[inline(always)]
     pub(crate) fn mean(&self, start: N, free_end: N, brake: N) -> N {
         let slip = self.slip_rate;
-        // Slipping one way throughout: the common case.
-        if start >= slip && free_end - brake >= slip {
-            return N::ONE;
-        }
-        if start <= -slip && free_end + brake <= -slip {
-            return -N::ONE;
-        }
-        if start > slip {
-            self.mean_from_slip(start, free_end, brake)
-        } else if start < -slip {
-            -self.mean_from_slip(-start, -free_end, brake)
+        if start >= slip {
+            // Slipping one way throughout.
+            if free_end - brake >= slip { N::ONE } else { self.mean_from_slip(start, free_end, brake) }
+        } else if start <= -slip {
+            if free_end + brake <= -slip { -N::ONE } else { -self.mean_from_slip(-start, -free_end, brake) }
         } else {
             self.mean_from_zone(start, free_end, brake)
         }
@@ -107,29 +111,27 @@ impl<N: Number> Law<N> {
     /// What decides whether the zone, in which the period starts, is left.
     #[inline(always)]
     pub(crate) fn zone(&self, start: N, free_end: N, brake: N) -> Zone<N> {
-        let here = self.clamp(start);
-        let half_brake = brake.half();
-        Zone { here, level: free_end - half_brake.times(here), stiffness: self.slip_rate + half_brake }
+        let half_here = self.half_part(start);
+        Zone { half_here, level: free_end - brake.times(half_here), stiffness: self.slip_rate + brake.half() }
     }
 
     /// The zone is where the period starts; it may be left on either side.
-    #[inline(never)]
+    #[inline(always)]
     fn mean_from_zone(&self, start: N, free_end: N, brake: N) -> N {
         let zone = self.zone(start, free_end, brake);
-        let Zone { here, level, .. } = zone;
         if zone.is_kept() {
             zone.mean()
-        } else if level > N::ZERO {
-            self.mean_out_of_zone(start, free_end, brake, here)
+        } else if zone.level > N::ZERO {
+            self.mean_out_of_zone(start, free_end, brake, zone.half_here)
         } else {
-            -self.mean_out_of_zone(-start, -free_end, brake, -here)
+            -self.mean_out_of_zone(-start, -free_end, brake, -zone.half_here)
         }
     }
 
     /// The zone is left above.
     #[inline(never)]
-    fn mean_out_of_zone(&self, start: N, free_end: N, brake: N, here: N) -> N {
-        let inside = here.half() + N::ONE.half();
+    fn mean_out_of_zone(&self, start: N, free_end: N, brake: N, half_here: N) -> N {
+        let inside = half_here + N::ONE.half();
         let before = (self.slip_rate - start).ratio(free_end - start - brake.times(inside));
         before.times(inside) + (N::ONE - before)
     }

@@ -6,65 +6,68 @@ use crate::number::Number;
 use crate::signals::Input;
 use crate::units::Units;
 
-/// Largest inputs.
+/// Largest inputs, as [`Number::beyond`] compares with them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Law<N> {
-    pub(crate) radial_accel: N,
-    pub(crate) axial_accel: N,
-    pub(crate) rate: N,
-    pub(crate) torque: N,
+#[repr(C)]
+pub(crate) struct Law {
+    pub(crate) radial_accel: u32,
+    pub(crate) axial_accel: u32,
+    pub(crate) rate: u32,
+    pub(crate) torque: u32,
 }
 
-impl<N: Number> Law<N> {
-    pub(crate) fn build(range: &Range, units: &Units) -> Self {
+impl Law {
+    pub(crate) fn build<N: Number>(range: &Range, units: &Units) -> Self {
         Self {
-            radial_accel: N::quantise(range.radial_accel_mps2, units.accel),
-            axial_accel: N::quantise(range.axial_accel_mps2, units.accel),
-            rate: N::quantise(range.rate_radps, units.rate),
-            torque: N::quantise(range.torque_nm, units.torque),
+            radial_accel: N::quantise(range.radial_accel_mps2, units.accel).limit(),
+            axial_accel: N::quantise(range.axial_accel_mps2, units.accel).limit(),
+            rate: N::quantise(range.rate_radps, units.rate).limit(),
+            torque: N::quantise(range.torque_nm, units.torque).limit(),
         }
     }
 
-    /// Makes the row one that the law may take: each value clamped to its range, or replaced by the last good one where
-    /// it is not a number.
+    /// Takes `input` for the row, as the law may take it: each value clamped to its range, or left as it was in the last
+    /// row where it is not a number.
     #[inline(always)]
-    pub(crate) fn admit(&self, last: &Input<N>, row: &mut Input<N>) -> Faults {
-        if self.admits(row) { Faults::NONE } else { self.mend(last, row) }
+    pub(crate) fn admit<N: Number>(&self, row: &mut Input<N>, input: &Input<N>, faults: &mut Faults) {
+        if self.admits(input) {
+            *row = *input;
+        } else {
+            *faults |= self.mend(row, input);
+        }
     }
 
-    /// Whether the row may be taken as it is: one branch for all six.
+    /// Whether the row may be taken as it is.
     #[inline(always)]
-    pub(crate) fn admits(&self, row: &Input<N>) -> bool {
-        row.accel_x_mps2.within(self.radial_accel)
-            & row.accel_y_mps2.within(self.radial_accel)
-            & row.accel_z_mps2.within(self.axial_accel)
-            & row.vehicle_rate_radps.within(self.rate)
-            & row.torque_nm.within(self.torque)
-            & row.spin_rate_radps.within(self.rate)
+    pub(crate) fn admits<N: Number>(&self, input: &Input<N>) -> bool {
+        !(input.accel_x_mps2.beyond(self.radial_accel)
+            || input.accel_y_mps2.beyond(self.radial_accel)
+            || input.accel_z_mps2.beyond(self.axial_accel)
+            || input.vehicle_rate_radps.beyond(self.rate)
+            || input.torque_nm.beyond(self.torque)
+            || input.spin_rate_radps.beyond(self.rate))
     }
 
     #[cold]
     #[inline(never)]
-    fn mend(&self, last: &Input<N>, row: &mut Input<N>) -> Faults {
+    fn mend<N: Number>(&self, row: &mut Input<N>, input: &Input<N>) -> Faults {
         let mut faults = Faults::NONE;
-        let mut admit = |value: &mut N, last: N, limit: N| {
-            if value.within(limit) {
-                return;
-            }
-            if value.is_number() {
+        let mut admit = |value: &mut N, given: N, limit: u32| {
+            if !given.beyond(limit) {
+                *value = given;
+            } else if given.is_number() {
                 faults |= Faults::INPUT_OUT_OF_RANGE;
-                *value = if *value > N::ZERO { limit } else { -limit };
+                *value = if given > N::ZERO { N::of_limit(limit) } else { -N::of_limit(limit) };
             } else {
                 faults |= Faults::INPUT_NOT_FINITE;
-                *value = last;
             }
         };
-        admit(&mut row.accel_x_mps2, last.accel_x_mps2, self.radial_accel);
-        admit(&mut row.accel_y_mps2, last.accel_y_mps2, self.radial_accel);
-        admit(&mut row.accel_z_mps2, last.accel_z_mps2, self.axial_accel);
-        admit(&mut row.vehicle_rate_radps, last.vehicle_rate_radps, self.rate);
-        admit(&mut row.torque_nm, last.torque_nm, self.torque);
-        admit(&mut row.spin_rate_radps, last.spin_rate_radps, self.rate);
+        admit(&mut row.accel_x_mps2, input.accel_x_mps2, self.radial_accel);
+        admit(&mut row.accel_y_mps2, input.accel_y_mps2, self.radial_accel);
+        admit(&mut row.accel_z_mps2, input.accel_z_mps2, self.axial_accel);
+        admit(&mut row.vehicle_rate_radps, input.vehicle_rate_radps, self.rate);
+        admit(&mut row.torque_nm, input.torque_nm, self.torque);
+        admit(&mut row.spin_rate_radps, input.spin_rate_radps, self.rate);
         faults
     }
 }

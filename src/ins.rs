@@ -5,66 +5,76 @@
 //! ```
 //!
 //! Both integrals are trapezoidal. Each product is counted in whole units, what is left over is carried to the next
-//! row, and the counts are added as 64-bit and 128-bit integers: hours of small increments lose nothing. What is added
-//! are plain sums, `r = sum g` of the products g and `q = sum r`; the trapezoids' half ends are taken out when a result
-//! is read, `v = T (r - g/2)` and `p = T^2 (q - r/2) - T v/2`, since the first product is zero.
+//! row, and the counts are added as integers: hours of small increments lose nothing. What is added are plain sums,
+//! `r = sum g` of the products g and `q = sum r`; the trapezoids' half ends are taken out when a result is read,
+//! `v = T (r - g/2)` and `p = T^2 (q - r/2) - T v/2`, since the first product is zero. The sums along y are those of
+//! `a_x phi`, and change sign when they are read.
 //!
-//! A count is at most 2^30, so that the sums are full after 2^33 rows: 99 days at 1 kHz.
+//! A count is the power of two at which 64 bits hold a position error of 1e8 m: 2^-16 m/s2 at 1 kHz. A velocity includes
+//! what is carried; a position is off by less than a count's velocity, 1.5e-8 m/s at 1 kHz, times the time.
 
 use crate::number::Number;
 use crate::units::Units;
 
-/// Sums of one axis pair.
+/// Sums of one axis pair: `a_y phi`, then `a_x phi`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct State<N: Number> {
-    /// What the last count left over.
-    carry: [N; 2],
-    sums: Sums,
-}
+pub(crate) struct State<N: Number>(pub(crate) [Sums<N>; 2]);
 
 /// Plain sums of whole counts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Sums {
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(C)]
+pub(crate) struct Sums<N: Number> {
     /// r
-    pub(crate) velocity: [i64; 2],
+    pub(crate) velocity: i64,
     /// q
-    pub(crate) position: [i128; 2],
+    pub(crate) position: i64,
+    /// What the last count left over.
+    pub(crate) carry: N::Carry,
 }
 
 /// How counts are made and read.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub(crate) struct Law<N: Number> {
-    /// Counts in a product of 1 m/s2 and 1 rad.
-    pub(crate) scale: N::Coef,
+    pub(crate) scale: N::CountScale,
     /// One count [m/s2].
     count_mps2: f64,
     period_s: f64,
 }
 
+/// Position error that the sums hold [m].
+const LARGEST_POSITION_M: f64 = 1e8;
+
 impl<N: Number> Law<N> {
     pub(crate) fn build(units: &Units, largest_accel: f64, period_s: f64) -> Self {
-        // The same count in both number systems: 2^-30 of the full scales' product.
-        let exponent = libm::frexp(largest_accel).1.max(units.accel + units.gimbal_angle) - 30;
-        Self { scale: N::coef(libm::ldexp(1.0, -exponent)), count_mps2: libm::ldexp(1.0, exponent), period_s }
+        let enough = libm::frexp(LARGEST_POSITION_M / (period_s * period_s)).1 - 63;
+        // A count of one product is an i32.
+        let product = libm::frexp(largest_accel).1.max(units.accel + units.gimbal_angle);
+        let exponent = enough.max(product - 30);
+        Self {
+            scale: N::count_scale(exponent, units.accel + units.gimbal_angle),
+            count_mps2: libm::ldexp(1.0, exponent),
+            period_s,
+        }
     }
 
     /// Adds the product at one row.
     #[inline(always)]
     pub(crate) fn step(&self, state: &mut State<N>, [accel_x, accel_y]: [N; 2], gimbal_angle: N) {
-        let scaled = N::count_scaled(gimbal_angle, self.scale);
-        let counts = [N::count(accel_y, scaled, &mut state.carry[0]), N::count(-accel_x, scaled, &mut state.carry[1])];
-        let Sums { velocity, position } = &mut state.sums;
-        for ((velocity, position), count) in velocity.iter_mut().zip(position).zip(counts) {
-            *velocity = velocity.wrapping_add(i64::from(count));
-            *position = position.wrapping_add(i128::from(*velocity));
+        let scaled = N::coarse_scaled(gimbal_angle, self.scale);
+        for (sums, accel) in state.0.iter_mut().zip([accel_y, accel_x]) {
+            let count = N::count_coarse(accel, scaled, self.scale, &mut sums.carry);
+            sums.velocity = sums.velocity.wrapping_add(i64::from(count));
+            sums.position = sums.position.wrapping_add(sums.velocity);
         }
     }
 
     /// v [m/s]; `products` are the products at the last row [rad m/s2].
     pub(crate) fn velocity_error_mps(&self, state: &State<N>, products: [f64; 2]) -> [f64; 2] {
         core::array::from_fn(|axis| {
-            let sum = state.sums.velocity[axis] as f64 * self.count_mps2;
-            self.period_s * (sum - 0.5 * products[axis])
+            let sums = &state.0[axis];
+            let counts = sums.velocity as f64 + N::carried(sums.carry, self.scale);
+            self.period_s * (SIGNS[axis] * counts * self.count_mps2 - 0.5 * products[axis])
         })
     }
 
@@ -72,15 +82,12 @@ impl<N: Number> Law<N> {
     pub(crate) fn position_error_m(&self, state: &State<N>, products: [f64; 2]) -> [f64; 2] {
         let velocity = self.velocity_error_mps(state, products);
         core::array::from_fn(|axis| {
-            let halves = 2 * state.sums.position[axis] - i128::from(state.sums.velocity[axis]);
-            0.5 * self.period_s * (self.period_s * self.count_mps2 * halves as f64 - velocity[axis])
+            let sums = &state.0[axis];
+            let counts = SIGNS[axis] * (sums.position as f64 - 0.5 * sums.velocity as f64);
+            self.period_s * (self.period_s * self.count_mps2 * counts - 0.5 * velocity[axis])
         })
     }
 }
 
-impl<N: Number> State<N> {
-    /// Every field, for saving.
-    pub(crate) fn parts(&mut self) -> (&mut [N; 2], &mut Sums) {
-        (&mut self.carry, &mut self.sums)
-    }
-}
+/// Of the sums, for (7).
+const SIGNS: [f64; 2] = [1.0, -1.0];

@@ -19,25 +19,29 @@ use crate::{bearing, free, friction, guard, ins, stop};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct Law<N: Number> {
+    pub(crate) guard: guard::Law,
+    /// Inputs are held or axes coupled: off the straight path.
+    pub(crate) unusual: bool,
     pub(crate) held_inputs: bool,
     pub(crate) cross_coupling: bool,
-    pub(crate) guard: guard::Law<N>,
     pub(crate) unbalance: Row<N, 2>,
     pub(crate) level: bearing::level::Law<N>,
     pub(crate) friction: friction::Law<N>,
     pub(crate) free: free::Law<N>,
-    pub(crate) small_angle: N,
-    /// 1 rad, beyond which phi does not go.
-    pub(crate) largest_angle: N,
-    /// A torque of no effect that keeps decayed modes out of subnormal numbers, on which many processors are slow.
-    pub(crate) stir: N,
+    /// What theta is compared with.
+    pub(crate) stop_limit: u32,
+    pub(crate) small_angle: u32,
     /// phi' to the full scale of rates.
     pub(crate) rate_shift: u32,
+    pub(crate) ins: ins::Law<N>,
+    pub(crate) tables: bearing::level::Tables<N>,
+    /// What a change of regime needs of the free loop.
+    pub(crate) instant: free::Instant<N>,
     /// Disturbance torques to the full scale of motor torques.
     pub(crate) motor_shift: u32,
-    pub(crate) ins: ins::Law<N>,
+    /// 1 rad, beyond which phi does not go.
+    pub(crate) largest_angle: N,
     pub(crate) stop: stop::Law<N>,
-    pub(crate) tables: bearing::level::Tables<N>,
     /// Torque that makes phi' jump by 1 over a period: `Jg / T`.
     pub(crate) drift_torque: ScaledRow<N, 1>,
     /// phi lost over a period to a drift of 1.
@@ -62,15 +66,18 @@ impl Config {
         let period = self.period_s;
         let range = &self.range;
         let (level, tables) = bearing::level::Law::build(self, &units);
+        let (held_inputs, cross_coupling) = (self.interpolation == Interpolation::Held, self.gyro.cross_coupling);
         Ok(Law {
-            held_inputs: self.interpolation == Interpolation::Held,
-            cross_coupling: self.gyro.cross_coupling,
-            guard: guard::Law::build(range, &units),
+            unusual: held_inputs || cross_coupling,
+            held_inputs,
+            cross_coupling,
+            guard: guard::Law::build::<N>(range, &units),
             unbalance: Row::build([-self.unbalance.y_kg_m, self.unbalance.x_kg_m], [units.accel; 2], units.torque),
             level,
             tables,
             friction: friction::Law::build(self.bearing.slip_rate_radps, &units),
             free: free::Law::build(&plant, &modes, &units, period),
+            instant: free::Instant::build(&plant, &modes, &units, period),
             stop: stop::Law::build(&plant, &units, self.gyro.stop_angle_rad, period),
             ins: ins::Law::build(&units, range.radial_accel_mps2.max(range.axial_accel_mps2), period),
             rate_shift: (units.rate - units.gimbal_rate).unsigned_abs(),
@@ -79,8 +86,8 @@ impl Config {
             drift_angle: ScaledRow::build([-0.5 * period], [units.gimbal_rate], units.gimbal_angle),
             drift_shift: (units.gyro_angle + units.rate - units.gimbal_rate).max(0).unsigned_abs(),
             largest_drift_torque: N::quantise(range.torque_nm, units.torque),
-            stir: N::quantise(1e-25, units.torque),
-            small_angle: N::quantise(0.1, units.gimbal_angle),
+            stop_limit: N::quantise(self.gyro.stop_angle_rad, units.gyro_angle).limit(),
+            small_angle: N::quantise(0.1, units.gimbal_angle).limit(),
             largest_angle: N::quantise(1.0, units.gimbal_angle),
             identity: self.identity(N::TAG),
             units,
@@ -100,7 +107,8 @@ impl<N: Number> Law<N> {
     pub fn settled(&self, row: Input<N>) -> State<N> {
         let mut state = State::new();
         let output = self.step(&mut state, row);
-        state.torque = output.friction_torque_nm + state.other_torque;
+        let torque = output.friction_torque_nm + state.other_torque;
+        state.torque = torque + torque;
         state
     }
 

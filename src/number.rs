@@ -36,6 +36,10 @@ pub trait Number:
     type Coef: Copy + Debug + Default + PartialEq + Mul<Self, Output = Self::Wide>;
     /// Sum of products; also holds a state that accumulates small increments.
     type Wide: Copy + Debug + Default + PartialEq + Add<Output = Self::Wide> + Sub<Output = Self::Wide>;
+    /// What a count has left over.
+    type Carry: Copy + Debug + Default + PartialEq;
+    /// Size of a count.
+    type CountScale: Copy + Debug + PartialEq;
 
     /// Zero.
     const ZERO: Self;
@@ -46,6 +50,8 @@ pub trait Number:
 
     /// Smallest mantissa of [`Number::hypot`].
     const SQRT_LOWEST: f64;
+    /// What its table has of the root.
+    const SQRT_GAIN: f64;
     /// Whether signals are fractions of full scales.
     const HAS_SCALES: bool;
     /// Tag of the number system in saved states and in digests.
@@ -54,6 +60,12 @@ pub trait Number:
     /// The signal nearest below a sum of products, for [`Fixed`]; the sum itself for `f32`. The full scale is known to
     /// hold the sum.
     fn head(wide: Self::Wide) -> Self;
+    /// The values themselves. For [`Fixed`] they pass through memory as words: kept in registers for long, the compiler
+    /// takes them for 64 bits and multiplies them as such.
+    #[must_use]
+    fn as_words<const L: usize>(values: [Self; L]) -> [Self; L];
+    /// Whether a sum is not within plus and minus a limit.
+    fn exceeds(wide: Self::Wide, limit: u32) -> bool;
     /// [`Number::head`] for any sum: saturates.
     fn narrow(wide: Self::Wide) -> Self;
     /// A sum times `2^shift`, saturated.
@@ -65,7 +77,8 @@ pub trait Number:
     /// Whether a sum lies beyond 1 of its full scale.
     fn is_full(wide: Self::Wide) -> bool;
     /// What [`Number::decay_coef`] leaves of a state: all of it for `f32`, the bits below the signal for [`Fixed`].
-    fn low(wide: Self::Wide) -> Self::Wide;
+    /// `head` is its signal.
+    fn kept(wide: Self::Wide, head: Self) -> Self::Wide;
     /// The signal as a sum.
     fn widen(self) -> Self::Wide;
     /// Product with all its bits; its full scale is the product of the two full scales.
@@ -79,6 +92,9 @@ pub trait Number:
     /// `self * 2^shift`, saturated: the same value in a full scale `2^shift` times smaller.
     #[must_use]
     fn shift_up(self, shift: u32) -> Self;
+    /// `self * 2^shift` where that is known to fit.
+    #[must_use]
+    fn times_power(self, shift: u32) -> Self;
     /// `self / divisor` in the full scale 2^0, for `|self| <= divisor`; saturates at 1 beyond.
     #[must_use]
     fn ratio(self, divisor: Self) -> Self;
@@ -97,14 +113,38 @@ pub trait Number:
     fn sixteenth_start(step: i32) -> Self;
     /// Whether the value is a number within `-limit..=limit`.
     fn within(self, limit: Self) -> bool;
+    /// The largest value, positive, in the form that [`Number::beyond`] takes.
+    fn limit(self) -> u32;
+    /// The value that [`Number::limit`] was made of.
+    fn of_limit(limit: u32) -> Self;
+    /// Whether the value is not within plus and minus a limit; true for what is not a number.
+    fn beyond(self, limit: u32) -> bool;
     /// Whether the value is finite.
     fn is_number(self) -> bool;
+
+    /// For `f32`, plus a torque of no effect that keeps decayed modes out of subnormal numbers, on which many processors
+    /// are slow.
+    #[must_use]
+    fn stirred(self) -> Self;
 
     /// A factor of [`Number::count`], for counts of `1 / scale`; as it is for [`Fixed`].
     fn count_scaled(signal: Self, scale: Self::Coef) -> Self;
     /// A product as a whole number of counts, what is left over carried to the next call. For [`Fixed`] a count is
     /// 2^-30 of the product of the full scales.
     fn count(left: Self, scaled: Self, carry: &mut Self) -> i32;
+
+    /// How [`Number::count_coarse`] makes counts of `2^exponent` of products of the full scale `2^product`.
+    fn count_scale(exponent: i32, product: i32) -> Self::CountScale;
+    /// A factor of [`Number::count_coarse`]; as it is for [`Fixed`].
+    fn coarse_scaled(signal: Self, scale: Self::CountScale) -> Self;
+    /// [`Number::count`] with counts of any size.
+    fn count_coarse(left: Self, scaled: Self, scale: Self::CountScale, carry: &mut Self::Carry) -> i32;
+    /// What is carried, in counts.
+    fn carried(carry: Self::Carry, scale: Self::CountScale) -> f64;
+    /// The carry's bits.
+    fn carry_to_bits(carry: Self::Carry) -> u64;
+    /// The carry with these bits.
+    fn carry_from_bits(bits: u64) -> Self::Carry;
 
     /// Exponent of the smallest full scale that holds `bound`; 0 for `f32`.
     fn exponent(bound: f64) -> i32;
@@ -114,7 +154,7 @@ pub trait Number:
     fn to_f64(self, exponent: i32) -> f64;
     /// `value * 2^exponent`: a factor between two full scales; `value` itself for `f32`.
     fn rescaled(value: f64, exponent: i32) -> f64;
-    /// The coefficient c that makes `low(x) + c * narrow(x)` equal `(1 + change) x`.
+    /// The coefficient c that makes `kept(x, head) + c * head` equal `(1 + change) x`.
     fn decay_coef(change: f64) -> Self::Coef;
     /// A coefficient.
     fn coef(value: f64) -> Self::Coef;

@@ -5,7 +5,6 @@ use crate::free::{self, Heads};
 use crate::law::Law;
 use crate::number::Number;
 use crate::signals::{Input, Output};
-use crate::state::State;
 
 /// The nine modes alone.
 #[doc(hidden)]
@@ -14,31 +13,36 @@ pub struct Modes<N: Number>(free::State<N>);
 
 #[doc(hidden)]
 impl<N: Number> Law<N> {
-    /// The linear part: nine modes driven by a change of the torque; theta, phi and `T_m` less the torque.
+    /// The linear part: nine modes driven by a change of the torque; theta, phi and phi'.
     pub fn part_linear(&self, modes: &mut Modes<N>, torque_change: N) -> [N; 3] {
         let heads = Heads::of(&modes.0);
-        let moved = self.free.advance(&mut modes.0, &heads, torque_change);
-        [moved.gyro_angle, N::narrow(moved.gimbal_angle), moved.motor_torque]
+        let (rate, angle) = self.free.quiet(&heads);
+        let gyro_angle = self.free.advance(&mut modes.0, &heads, torque_change);
+        let angle = N::narrow(angle + self.free.gimbal_angle_gain * torque_change);
+        [gyro_angle, angle, N::head(rate + self.free.gimbal_rate_gain * torque_change)]
     }
 
-    /// The input guard.
-    pub fn part_guard(&self, state: &State<N>, row: &mut Input<N>) -> Faults {
-        self.guard.admit(&state.row, row)
+    /// The input guard; `row` is the last row, and becomes this one.
+    pub fn part_guard(&self, row: &mut Input<N>, input: &Input<N>) -> Faults {
+        let mut faults = Faults::NONE;
+        self.guard.admit(row, input, &mut faults);
+        faults
     }
 
     /// Friction over the period from `last` to `now`, solved for the rate that it leaves.
     pub fn part_friction(&self, last: &Output<N>, now: &Output<N>, level: N) -> N {
-        let brake = self.free.gimbal_rate_gain.at(&[level]).shift_down(self.rate_shift);
+        let brake = N::head(self.free.gimbal_rate_gain * level).shift_down(self.rate_shift);
         level.times(self.friction.mean(last.relative_rate_radps, now.relative_rate_radps, brake))
     }
 
     /// The friction level by the step's tables.
     pub fn part_level(&self, row: &Input<N>, rate: N) -> N {
-        self.level.at(&self.tables, [row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2], rate).torque
+        let accel = [row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2];
+        self.level.at(&self.tables, accel, rate, &mut Faults::default())
     }
 
     /// The root that the friction level takes of the sum of two squares.
     pub fn part_root(&self, x: N, y: N) -> N {
-        x.hypot(y, self.tables.sqrt())
+        x.hypot(y, &self.tables.sqrt)
     }
 }

@@ -28,6 +28,12 @@ impl<N: Number, const L: usize> Row<N, L> {
         N::head(self.increment(signals))
     }
 
+    /// The sum above `base`, rounded once.
+    #[inline(always)]
+    pub(crate) fn above(&self, base: N::Wide, signals: &[N; L]) -> N {
+        N::head(self.coefs.iter().zip(signals).fold(base, |sum, (coef, signal)| sum + *coef * *signal))
+    }
+
     /// The sum with all its bits, to be added to a state.
     #[inline(always)]
     pub(crate) fn increment(&self, signals: &[N; L]) -> N::Wide {

@@ -2,14 +2,15 @@
 //!
 //! | bytes | content |
 //! |---|---|
-//! | 4 | `GSS1` |
+//! | 4 | `GSS2` |
 //! | 1 | number system |
 //! | 4 | identity of the law |
-//! | 1 | regime: new, free, on the positive stop, on the negative one |
+//! | 1 | regime: new, free, on the positive stop, on the negative one, just released |
 //! | 2 | lasting fault bits |
+//! | 2 | fault bits of the last step |
 //! | 4 each | signals, in the order of [`State`]'s fields |
 //! | 8 each | accumulating states |
-//! | 56 | INS carries and sums |
+//! | 48 | INS sums and carries |
 //! | 4 | checksum of all before |
 
 use core::fmt;
@@ -21,10 +22,10 @@ use crate::number::Number;
 use crate::state::{Regime, State};
 use crate::stop::Side;
 
-const MAGIC: [u8; 4] = *b"GSS1";
+const MAGIC: [u8; 4] = *b"GSS2";
 
 /// Length of a saved state in bytes.
-pub const SAVED_LEN: usize = 12 + 14 * 4 + 18 * 8 + 2 * 4 + 2 * 8 + 2 * 16 + 4;
+pub const SAVED_LEN: usize = 14 + 15 * 4 + 18 * 8 + 6 * 8 + 4;
 
 /// A state as bytes.
 pub type Saved = [u8; SAVED_LEN];
@@ -74,9 +75,11 @@ impl<N: Number> Law<N> {
             Regime::Free => 1,
             Regime::Held(Side::Positive) => 2,
             Regime::Held(Side::Negative) => 3,
+            Regime::Released => 4,
         };
         writer.put(&[regime]);
         writer.put(&state.lasting.bits().to_le_bytes());
+        writer.put(&state.faults.bits().to_le_bytes());
         // Walking a copy keeps the order of fields in one place.
         let mut copy = *state;
         walk(&mut copy, &mut writer);
@@ -109,6 +112,7 @@ impl<N: Number> Law<N> {
             [1] => Regime::Free,
             [2] => Regime::Held(Side::Positive),
             [3] => Regime::Held(Side::Negative),
+            [4] => Regime::Released,
             _ => return Err(RestoreError::Impossible),
         };
         state.lasting = match u16::from_le_bytes(reader.take()) {
@@ -116,6 +120,13 @@ impl<N: Number> Law<N> {
             bits if bits == Faults::OFFSET_LEFT.bits() => Faults::OFFSET_LEFT,
             _ => return Err(RestoreError::Impossible),
         };
+        let bits = u16::from_le_bytes(reader.take());
+        for (fault, _) in Faults::NAMES {
+            state.faults |= if bits & fault.bits() == 0 { Faults::NONE } else { fault };
+        }
+        if state.faults.bits() != bits {
+            return Err(RestoreError::Impossible);
+        }
         walk(&mut state, &mut reader);
         if reader.impossible { Err(RestoreError::Impossible) } else { Ok(state) }
     }
@@ -162,11 +173,12 @@ fn walk<N: Number>(state: &mut State<N>, codec: &mut impl Codec) {
         &mut state.friction_level,
         &mut state.other_torque,
         &mut state.torque,
-        &mut state.gyro_angle,
-        &mut state.gimbal_rate,
+        &mut state.sensed_rate,
         &mut state.relative_rate,
-        &mut state.drift,
+        &mut state.gyro_angle,
         &mut state.gimbal_angle,
+        &mut state.stop_change_age,
+        &mut state.drift,
     ] {
         codec.signal(signal);
     }
@@ -180,25 +192,15 @@ fn walk<N: Number>(state: &mut State<N>, codec: &mut impl Codec) {
     }
     codec.wide::<N>(&mut state.held.gimbal_rate);
     codec.wide::<N>(&mut state.held.gimbal_angle);
-    state.ins.walk(codec);
-}
-
-impl<N: Number> crate::ins::State<N> {
-    fn walk(&mut self, codec: &mut impl Codec) {
-        let (carry, sums) = self.parts();
-        for carry in carry {
-            codec.bits(carry);
-        }
-        for velocity in &mut sums.velocity {
-            let mut bytes = velocity.to_le_bytes();
+    for sums in &mut state.ins.0 {
+        for sum in [&mut sums.velocity, &mut sums.position] {
+            let mut bytes = sum.to_le_bytes();
             codec.bytes(&mut bytes);
-            *velocity = i64::from_le_bytes(bytes);
+            *sum = i64::from_le_bytes(bytes);
         }
-        for position in &mut sums.position {
-            let mut bytes = position.to_le_bytes();
-            codec.bytes(&mut bytes);
-            *position = i128::from_le_bytes(bytes);
-        }
+        let mut bytes = N::carry_to_bits(sums.carry).to_le_bytes();
+        codec.bytes(&mut bytes);
+        sums.carry = N::carry_from_bits(u64::from_le_bytes(bytes));
     }
 }
 

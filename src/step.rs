@@ -1,12 +1,16 @@
 //! One period of one axis.
 //!
 //! ```text
-//! row -> admitted row -> unbalance, friction level -> mean over the period -> friction solved -> loop -> INS sums
+//! row -> admitted row -> unbalance, friction level -> both ends of the period -> friction solved -> loop -> INS sums
 //! ```
 //!
-//! The free gyro is the straight path; a stop, the first row and cross coupling are branches off it.
+//! The free gyro is the straight path; a stop, the first row, held inputs and cross coupling are branches off it.
+//!
+//! Torques over a period are the sums of its two ends, twice their mean; the loop's factors are halves for it.
 
 mod held;
+mod output;
+mod unusual;
 
 use crate::faults::Faults;
 use crate::free::Heads;
@@ -15,26 +19,17 @@ use crate::number::Number;
 use crate::signals::{Input, Output};
 use crate::state::{Regime, State};
 
-/// The disturbance at one row.
-#[derive(Clone, Copy)]
-pub(super) struct Disturbance<N: Number> {
-    pub(super) row: Input<N>,
-    pub(super) unbalance: N,
-    /// All disturbance torques but friction.
-    pub(super) other: N,
-    pub(super) friction_level: N,
-    /// Apparent drift of the gyro, `theta w_x`.
-    pub(super) drift: N,
-    pub(super) faults: Faults,
-}
-
 /// What acts over a period.
+#[derive(Clone, Copy)]
 pub(super) struct Acting<N> {
+    /// All disturbance torques but friction, both ends added.
     pub(super) other: N,
+    /// Both ends added.
     pub(super) friction_level: N,
-    /// Vehicle rate at the end of the period.
+    /// Vehicle rate at the end of the period, as the gyro senses the stable member's.
+    pub(super) end_rate: N,
+    /// Vehicle rate at this row, likewise.
     pub(super) vehicle_rate: N,
-    pub(super) drift: N,
 }
 
 /// The loop at the end of a period.
@@ -44,157 +39,129 @@ pub(super) struct Moved<N: Number> {
     /// phi' as the gyro senses it: with the drift that cross coupling adds.
     pub(super) sensed_rate: N,
     pub(super) gyro_angle: N,
-    pub(super) motor_torque: N,
-    pub(super) stop_change_age: N,
 }
 
 impl<N: Number> Law<N> {
-    /// Takes the row of this instant and gives the state of the axis at it.
+    /// Takes the row of this instant and gives the state of the axis at it: [`Law::advance`], then [`Law::output`].
     ///
     /// The first call has no period behind it: it gives the initial state. Every later call advances the axis by one
     /// period over which the mean of the last two rows acts (or the last row, [`crate::Interpolation::Held`]).
-    pub fn step(&self, state: &mut State<N>, mut input: Input<N>) -> Output<N> {
-        let faults = self.guard.admit(&state.row, &mut input);
-        let now = self.disturbance(state, input, faults);
-        if state.regime != Regime::Free {
-            return self.step_held(state, now);
-        }
-        let acting = self.acting(state, now);
-        let heads = Heads::of(&state.free);
-        let quiet_change = acting.other - state.torque;
-        let quiet_rate = self.free.gimbal_rate(&heads, quiet_change);
-        let brake = self.free.gimbal_rate_gain.at(&[acting.friction_level]);
-        let torque = self.torque(state, &acting, quiet_rate, brake);
-        let change = torque - state.torque + self.stir;
-        let sensed_rate = quiet_rate + self.free.gimbal_rate_gain.at(&[change - quiet_change]);
-        let moved = self.free.advance(&mut state.free, &heads, change);
-        state.torque = torque;
-        let gimbal_angle = state.offset + moved.gimbal_angle;
-        if !moved.gyro_angle.within(self.stop.angle) {
-            return self.meet_stop(state, now, heads, gimbal_angle, sensed_rate, moved.gyro_angle);
-        }
-        let motor_torque = self.motor_full_scale(torque) + moved.motor_torque;
-        let moved =
-            Moved { gimbal_angle, sensed_rate, gyro_angle: moved.gyro_angle, motor_torque, stop_change_age: N::ZERO };
-        self.finish(state, now, moved)
+    pub fn step(&self, state: &mut State<N>, input: Input<N>) -> Output<N> {
+        self.advance(state, &input);
+        self.output(state)
     }
 
-    /// The disturbance at an admitted row.
-    #[inline(always)]
-    fn disturbance(&self, state: &State<N>, row: Input<N>, faults: Faults) -> Disturbance<N> {
-        let unbalance = self.unbalance.at(&[row.accel_x_mps2, row.accel_y_mps2]);
-        // The level's viscous part takes the bearing's rate with phi' as it was at the last row.
-        let rate = row.vehicle_rate_radps - state.gimbal_rate.shift_down(self.rate_shift);
-        let accel = [row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2];
-        let level = self.level.at(&self.tables, accel, rate);
-        Disturbance {
-            row,
-            unbalance,
-            other: unbalance + row.torque_nm,
-            friction_level: level.torque,
-            drift: if self.cross_coupling { self.drift(state, &row) } else { N::ZERO },
-            faults: if level.table_end { faults | Faults::TABLE_END } else { faults },
-        }
-    }
-
-    /// `theta w_x`.
-    fn drift(&self, state: &State<N>, row: &Input<N>) -> N {
-        N::narrow_shifted(state.gyro_angle.product(row.spin_rate_radps), self.drift_shift)
-    }
-
-    #[inline(always)]
-    pub(super) fn acting(&self, state: &mut State<N>, now: Disturbance<N>) -> Acting<N> {
-        let mut acting = if self.held_inputs {
-            Acting {
-                other: state.other_torque,
-                friction_level: state.friction_level,
-                vehicle_rate: state.row.vehicle_rate_radps,
-                drift: now.drift,
-            }
+    /// [`Law::step`] without its output: what has to be done in every period. The attitude error, theta and the fault
+    /// bits are in the state ([`State::gimbal_angle_rad`], [`State::gyro_angle_rad`]); the torques are worked out when
+    /// [`Law::output`] is called, which changes nothing.
+    pub fn advance(&self, state: &mut State<N>, input: &Input<N>) -> Faults {
+        let mut faults = state.lasting;
+        self.guard.admit(&mut state.row, input, &mut faults);
+        let acting = if self.unusual {
+            let (acting, beyond) = self.act_unusually(state);
+            faults |= beyond;
+            acting.taken_apart()
         } else {
-            Acting {
-                other: state.other_torque.half() + now.other.half(),
-                friction_level: state.friction_level.half() + now.friction_level.half(),
-                vehicle_rate: now.row.vehicle_rate_radps,
-                drift: now.drift,
-            }
+            self.act(state, &mut faults)
         };
-        if self.cross_coupling {
-            acting.other = acting.other + self.couple(state, now.drift);
-        }
-        acting
-    }
+        let moved = if state.regime == Regime::Free || self.resume(state) {
+            self.move_free(state, &acting, &mut faults)
+        } else {
+            faults |= self.move_held(state, acting.taken_apart());
+            Moved::told(state)
+        };
 
-    /// The gyro senses phi' + drift, and the gimbal obeys (1) for phi' alone: for the sensed rate, a change of the drift is
-    /// a torque, which this gives. phi loses the drift's integral.
-    fn couple(&self, state: &mut State<N>, drift: N) -> N {
-        let lost = self.drift_angle.increment(&[drift]) + self.drift_angle.increment(&[state.drift]);
-        state.offset = N::confine(state.offset + lost);
-        state.held.gimbal_angle = N::confine(state.held.gimbal_angle + lost);
-        let limit = self.largest_drift_torque;
-        self.drift_torque.at(&[drift - state.drift]).least(limit).most(-limit)
-    }
-
-    /// Torque over the period, friction included, when phi' would become `quiet_rate` without friction and `brake` less
-    /// with all of it.
-    #[inline(always)]
-    pub(super) fn torque(&self, state: &State<N>, acting: &Acting<N>, quiet_rate: N, brake: N) -> N {
-        let free_end = acting.vehicle_rate - (quiet_rate - acting.drift).shift_down(self.rate_shift);
-        let brake = brake.shift_down(self.rate_shift);
-        let share = self.friction.mean(state.relative_rate, free_end, brake);
-        acting.other + acting.friction_level.times(share)
-    }
-
-    /// A disturbance torque in the full scale of motor torques.
-    #[inline(always)]
-    pub(super) fn motor_full_scale(&self, torque: N) -> N {
-        torque.shift_down(self.motor_shift)
-    }
-
-    /// Remembers the row, adds up the INS errors, and gives the output.
-    #[inline(always)]
-    pub(super) fn finish(&self, state: &mut State<N>, now: Disturbance<N>, moved: Moved<N>) -> Output<N> {
-        let row = now.row;
-        let mut faults = now.faults | state.lasting;
-        let mut gimbal_angle = N::narrow(moved.gimbal_angle);
-        if !gimbal_angle.within(self.small_angle) {
+        let mut gimbal_angle = N::head(moved.gimbal_angle);
+        if N::exceeds(moved.gimbal_angle, self.small_angle) {
             let beyond;
             (gimbal_angle, beyond) = self.confine_angle(moved.gimbal_angle);
             faults |= beyond;
         }
-        let gimbal_rate = moved.sensed_rate - now.drift;
-        let relative_rate = row.vehicle_rate_radps - gimbal_rate.shift_down(self.rate_shift);
-        let friction = now.friction_level.times(self.friction.clamp(relative_rate));
-        self.ins.step(&mut state.ins, [row.accel_x_mps2, row.accel_y_mps2], gimbal_angle);
-
-        state.row = row;
-        state.friction_level = now.friction_level;
-        state.other_torque = now.other;
-        state.gyro_angle = moved.gyro_angle;
+        self.ins.step(&mut state.ins, [state.row.accel_x_mps2, state.row.accel_y_mps2], gimbal_angle);
         state.gimbal_angle = gimbal_angle;
-        state.gimbal_rate = gimbal_rate;
-        state.relative_rate = relative_rate;
-        state.drift = now.drift;
-        Output {
-            gimbal_angle_rad: gimbal_angle,
-            gimbal_rate_radps: gimbal_rate,
-            gyro_angle_rad: moved.gyro_angle,
-            motor_torque_nm: moved.motor_torque,
-            friction_torque_nm: friction,
-            unbalance_torque_nm: now.unbalance,
-            disturbance_torque_nm: state.torque,
-            relative_rate_radps: relative_rate,
-            stop: state.regime.stop(),
-            stop_change_age: moved.stop_change_age,
-            faults,
+        state.gyro_angle = moved.gyro_angle;
+        state.sensed_rate = moved.sensed_rate;
+        state.relative_rate = acting.vehicle_rate - moved.sensed_rate.shift_down(self.rate_shift);
+        state.faults = faults;
+        faults
+    }
+
+    /// The disturbance at the row just admitted, and with the last row's over the period.
+    #[inline(always)]
+    fn act(&self, state: &mut State<N>, faults: &mut Faults) -> Acting<N> {
+        let row = &state.row;
+        let vehicle_rate = row.vehicle_rate_radps;
+        let other = self.unbalance.above(row.torque_nm.widen(), &[row.accel_x_mps2, row.accel_y_mps2]);
+        // The level's viscous part takes the bearing's rate with phi' as it was at the last row.
+        let rate = vehicle_rate - state.sensed_rate.shift_down(self.rate_shift);
+        let accel = [row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2];
+        let level = self.level.at(&self.tables, accel, rate, faults);
+        let acting = Acting {
+            other: state.other_torque + other,
+            friction_level: state.friction_level + level,
+            end_rate: vehicle_rate,
+            vehicle_rate,
+        };
+        state.other_torque = other;
+        state.friction_level = level;
+        acting
+    }
+
+    /// One period with the gyro off its stops.
+    #[inline(always)]
+    fn move_free(&self, state: &mut State<N>, acting: &Acting<N>, faults: &mut Faults) -> Moved<N> {
+        let heads = Heads::of(&state.free);
+        let quiet_change = (acting.other - state.torque).stirred();
+        let (rate, angle) = self.free.quiet(&heads);
+        let quiet_rate = N::head(rate + self.free.gimbal_rate_gain * quiet_change);
+        let brake = N::head(self.free.gimbal_rate_gain * acting.friction_level);
+        let share = self.friction_share(state.relative_rate, acting.end_rate, quiet_rate, brake);
+        let friction = acting.friction_level.times(share);
+        let change = quiet_change + friction;
+        let sensed_rate = quiet_rate + brake.times(share);
+        let gyro_angle = self.free.advance(&mut state.free, &heads, change);
+        let gimbal_angle = state.offset + (angle + self.free.gimbal_angle_gain * change);
+        state.torque = acting.other + friction;
+        if gyro_angle.beyond(self.stop_limit) {
+            *faults |= self.meet_stop(state, gimbal_angle, sensed_rate, gyro_angle);
+            return Moved::told(state);
         }
+        Moved { gimbal_angle, sensed_rate, gyro_angle }
+    }
+
+    /// Friction's mean share of its level over the period, when phi' would become `quiet_rate` without friction and
+    /// `brake` more with all of it.
+    #[inline(always)]
+    pub(super) fn friction_share(&self, relative_rate: N, end_rate: N, quiet_rate: N, brake: N) -> N {
+        let free_end = end_rate - quiet_rate.shift_down(self.rate_shift);
+        self.friction.mean(relative_rate, free_end, brake.shift_down(self.rate_shift))
     }
 
     /// phi beyond the small angles: flagged, and kept within +-1 rad.
     #[cold]
+    #[inline(never)]
     fn confine_angle(&self, wide: N::Wide) -> (N, Faults) {
         let (angle, limit) = (N::narrow(wide), self.largest_angle);
         let full = Faults::ARITHMETIC_SATURATED.when(N::is_full(wide) || !angle.within(limit));
         (angle.least(limit).most(-limit), Faults::SMALL_ANGLE_EXCEEDED | full)
+    }
+}
+
+// What functions off the straight path take and give passes through memory. Taken apart, it does so there alone: the
+// straight path keeps its own in registers.
+
+impl<N: Number> Acting<N> {
+    #[inline(always)]
+    fn taken_apart(&self) -> Self {
+        let Self { other, friction_level, end_rate, vehicle_rate } = *self;
+        Self { other, friction_level, end_rate, vehicle_rate }
+    }
+}
+
+impl<N: Number> Moved<N> {
+    /// What a function off the straight path has written into the state.
+    #[inline(always)]
+    fn told(state: &State<N>) -> Self {
+        Self { gimbal_angle: state.held.gimbal_angle, sensed_rate: state.sensed_rate, gyro_angle: state.gyro_angle }
     }
 }

@@ -102,6 +102,12 @@ impl<N: Number> Law<N> {
         self.motor_torque.at(&[y, a, b, c, d, e, stop])
     }
 
+    /// `T_m` on the stop.
+    #[inline(never)]
+    pub(crate) fn motor_torque_of(&self, state: &State<N>, stop: N) -> N {
+        self.motor_torque(&Self::motor(state), stop)
+    }
+
     /// phi' at the end of the period under the torque `torque`.
     pub(crate) fn gimbal_rate(&self, state: &State<N>, stop: N, torque: N) -> N {
         let [y, a, b, c, d, e] = Self::motor(state);
@@ -119,7 +125,8 @@ impl<N: Number> Law<N> {
         state.gimbal_rate = N::confine(state.gimbal_rate + self.gimbal_rate_change.increment(&signals));
         state.integrator = N::confine(state.integrator + self.integrator_change.increment(&[stop]));
         for (lag, decay) in state.lags.iter_mut().zip(&self.lag_decay) {
-            *lag = N::low(*lag) + *decay * N::narrow(*lag);
+            let head = N::head(*lag);
+            *lag = N::kept(*lag, head) + *decay * head;
         }
     }
 }

@@ -86,8 +86,9 @@ impl<N: Number> SqrtTable<N> {
             let octave = if segment < 32 { N::SQRT_LOWEST } else { 2.0 * N::SQRT_LOWEST };
             let left = octave * (1.0 + (segment % 32) as f64 / 32.0);
             let right = left + octave / 32.0;
-            let slope = 1.0 / (libm::sqrt(left) + libm::sqrt(right));
-            *chord = Chord { offset: N::quantise(libm::sqrt(left) - slope * left, 0), slope: N::coef(slope) };
+            let slope = N::SQRT_GAIN / (libm::sqrt(left) + libm::sqrt(right));
+            let offset = N::SQRT_GAIN * libm::sqrt(left) - slope * left;
+            *chord = Chord { offset: N::quantise(offset, 0), slope: N::coef(slope) };
         }
         Self { chords }
     }

@@ -41,9 +41,9 @@ impl Units {
         let largest_torque = friction + unbalance + range.torque_nm + drift;
 
         let bounds = modes.bounds().map(|bound| bound * largest_torque);
-        let torque = N::exponent(2.0 * largest_torque);
+        let torque = N::exponent(4.0 * largest_torque);
         // A coefficient is a fraction: a mode's full scale also holds what the torque's full scale drives.
-        let drive = modes.drive(config.period_s).map(|factor| N::exponent(N::rescaled(factor.abs(), torque)));
+        let drive = modes.drive(config.period_s).map(|factor| N::exponent(N::rescaled(0.5 * factor.abs(), torque)));
         let mut mode_scales: [i32; ORDER] = core::array::from_fn(|i| N::exponent(bounds[i]).max(drive[i]));
         let (transitions, _) = modes.transition(config.period_s);
         for (pair, [_, to_first, to_second, _]) in mode_scales.chunks_exact_mut(2).zip(transitions) {
@@ -61,7 +61,7 @@ impl Units {
         let angle_row = modes.row(|s| plant.gimbal_angle_of(s));
         let rate_row = modes.row(|s| plant.gimbal_rate_of(s));
         let torque_row = modes.row(|s| plant.motor_torque_of(s));
-        let rate_change = config.period_s / plant.gimbal_inertia * libm::ldexp(1.0, torque);
+        let rate_change = 0.5 * config.period_s / plant.gimbal_inertia * libm::ldexp(1.0, torque);
         let gimbal_rate = output(rate_row, reach(&rate_row).max(rate_change).max(1.0));
         // theta' of a few rad/s: beyond, the gyro crosses from stop to stop within a few periods.
         let fastest_gyro = 4.0;
@@ -69,7 +69,7 @@ impl Units {
             accel,
             // the difference of two rates must fit
             rate: N::exponent(2.0 * range.rate_radps).max(gimbal_rate),
-            // the change of a torque must fit
+            // the change of a torque over a period must fit, both ends added
             torque,
             gimbal_angle: output(angle_row, 0.9),
             gimbal_rate,

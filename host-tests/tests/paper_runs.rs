@@ -36,7 +36,8 @@ fn closed_form_velocity_error_after_20_g_on_the_unbalance() {
         assert!(relative(then.velocity_error_mps[0], now.velocity_error_mps[0]) < 1e-12);
         let run_on_m = now.position_error_m[0] - then.position_error_m[0];
         let time_s = (run.samples.len() - 1 - 5001) as f64 * 1e-3;
-        assert!(relative(run_on_m, now.velocity_error_mps[0] * time_s) < 1e-9);
+        // A position's sums leave out what the velocity carries, less than a count of 2^-16 m/s2 times 1 ms: 1.5e-8 m/s.
+        assert!((run_on_m - now.velocity_error_mps[0] * time_s).abs() < 1.6e-8 * time_s);
         assert!(now.velocity_error_mps[1].abs() < 1e-12, "a_x is zero");
     }
 }

@@ -8,7 +8,7 @@ use crate::bearing::level;
 use crate::build::modes::BLOCKS;
 use crate::build::poles::ORDER;
 use crate::law::Law;
-use crate::row::{Row, ScaledRow};
+use crate::row::Row;
 use crate::state::{Regime, State};
 use crate::{free, friction, guard};
 
@@ -19,21 +19,23 @@ type Lanes<const L: usize> = [f32; L];
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub(super) struct Coefs<const L: usize> {
-    pub(super) stop_angle: Lanes<L>,
-    pub(super) small_angle: Lanes<L>,
-    pub(super) stir: Lanes<L>,
+    pub(super) stop_limit: [u32; L],
+    pub(super) small_angle: [u32; L],
     pub(super) ins_scale: Lanes<L>,
     /// Where the tables begin.
     pub(super) first_power: [i32; L],
     pub(super) first_viscous: [i32; L],
-    guard: [Lanes<L>; 4],
+    guard: [[u32; L]; 4],
     unbalance: [Lanes<L>; 2],
-    level: [Lanes<L>; 10],
+    level: [Lanes<L>; 8],
+    viscous_break: [u32; L],
     friction: [Lanes<L>; 2],
-    gimbal_rate: [Lanes<L>; ORDER + 1],
-    blocks: [[Lanes<L>; 10]; BLOCKS],
-    single: [Lanes<L>; 4],
-    change: [Lanes<L>; 3],
+    gimbal_rate: [Lanes<L>; ORDER],
+    gimbal_angle: [Lanes<L>; ORDER],
+    motor_torque: [Lanes<L>; ORDER],
+    blocks: [[Lanes<L>; 6]; BLOCKS],
+    single: [Lanes<L>; 2],
+    change: [Lanes<L>; 2],
     /// Inputs are held from row to row.
     pub(super) held_inputs: bool,
 }
@@ -42,9 +44,8 @@ impl<const L: usize> Coefs<L> {
     pub(super) fn new(laws: &[&Law<f32>; L]) -> Self {
         Self {
             held_inputs: laws.first().is_some_and(|law| law.held_inputs),
-            stop_angle: laws.map(|law| law.stop.angle),
+            stop_limit: laws.map(|law| law.stop_limit),
             small_angle: laws.map(|law| law.small_angle),
-            stir: laws.map(|law| law.stir),
             ins_scale: laws.map(|law| law.ins.scale),
             first_power: laws.map(|law| law.tables.power.first()),
             first_viscous: laws.map(|law| law.tables.viscous_high.first()),
@@ -57,27 +58,24 @@ impl<const L: usize> Coefs<L> {
                 let level = &law.level;
                 let ([s0, s1], [a0, a1]) = (level.static_load.coefs, level.axial_load.coefs);
                 let (static_preload, axial_preload) = (level.static_preload, level.axial_preload);
-                let [radial] = level.radial_load.coefs;
-                let (most, rate, low) = (level.largest_radial, level.viscous_break, level.viscous_low);
-                [most, s0, s1, static_preload, a0, a1, axial_preload, radial, rate, low]
+                [level.largest_radial, s0, s1, static_preload, a0, a1, axial_preload, level.viscous_low]
             }),
-            friction: side_by_side(laws, |law| [law.friction.slip_rate, law.friction.steepness.coefs[0]]),
-            gimbal_rate: side_by_side(laws, |law| law.free.gimbal_rate.coefs),
+            viscous_break: laws.map(|law| law.level.viscous_break),
+            friction: side_by_side(laws, |law| [law.friction.slip_rate, law.friction.steepness]),
+            gimbal_rate: side_by_side(laws, |law| law.free.gimbal_rate),
+            gimbal_angle: side_by_side(laws, |law| law.free.gimbal_angle),
+            motor_torque: side_by_side(laws, |law| law.instant.motor_torque.coefs),
             blocks: core::array::from_fn(|block| {
                 side_by_side(laws, |law| {
-                    let free::Block { transition: [a, b, c, d], drive, gimbal_angle, motor_torque } =
-                        law.free.blocks[block];
-                    let ([e, f], [g, h], [i, j]) = (drive, gimbal_angle, motor_torque);
-                    [a, b, c, d, e, f, g, h, i, j]
+                    let free::Block { transition: [a, b, c, d], drive: [e, f] } = law.free.blocks[block];
+                    [a, b, c, d, e, f]
                 })
             }),
             single: side_by_side(laws, |law| {
-                let free::Single { transition, drive, gimbal_angle, motor_torque } = law.free.single;
-                [transition, drive, gimbal_angle, motor_torque]
+                let free::Single { transition, drive } = law.free.single;
+                [transition, drive]
             }),
-            change: side_by_side(laws, |law| {
-                [law.free.gimbal_angle, law.free.motor_torque, law.free.gimbal_rate_gain.coefs[0]]
-            }),
+            change: side_by_side(laws, |law| [law.free.gimbal_rate_gain, law.free.gimbal_angle_gain]),
         }
     }
 
@@ -88,7 +86,7 @@ impl<const L: usize> Coefs<L> {
     }
 
     #[inline(always)]
-    pub(super) fn guard(&self, lane: usize) -> guard::Law<f32> {
+    pub(super) fn guard(&self, lane: usize) -> guard::Law {
         let [radial_accel, axial_accel, rate, torque] = at(&self.guard, lane);
         guard::Law { radial_accel, axial_accel, rate, torque }
     }
@@ -100,17 +98,16 @@ impl<const L: usize> Coefs<L> {
 
     #[inline(always)]
     pub(super) fn level(&self, lane: usize) -> level::Law<f32> {
-        let [largest_radial, s0, s1, static_preload, a0, a1, axial_preload, radial, viscous_break, viscous_low] =
-            at(&self.level, lane);
+        let [largest_radial, s0, s1, static_preload, a0, a1, axial_preload, viscous_low] = at(&self.level, lane);
         level::Law {
             largest_radial,
             static_load: Row { coefs: [s0, s1] },
-            static_preload,
             axial_load: Row { coefs: [a0, a1] },
+            static_preload,
             axial_preload,
-            radial_load: Row { coefs: [radial] },
+            load_shift: 0,
             shift: 0,
-            viscous_break,
+            viscous_break: self.viscous_break[lane],
             viscous_low,
         }
     }
@@ -118,41 +115,41 @@ impl<const L: usize> Coefs<L> {
     #[inline(always)]
     pub(super) fn friction(&self, lane: usize) -> friction::Law<f32> {
         let [slip_rate, steepness] = at(&self.friction, lane);
-        friction::Law { slip_rate, steepness: ScaledRow { coefs: [steepness], shift: 0 } }
+        friction::Law { slip_rate, steepness, steepness_shift: 0 }
+    }
+
+    /// `T_m` less `T_d`, of the modes at one instant.
+    #[inline(always)]
+    pub(super) fn motor_torque(&self, lane: usize) -> Row<f32, ORDER> {
+        Row { coefs: at(&self.motor_torque, lane) }
     }
 
     #[inline(always)]
     pub(super) fn free(&self, lane: usize) -> free::Law<f32> {
         let block = |block: usize| {
-            let [a, b, c, d, e, f, g, h, i, j] = at(&self.blocks[block], lane);
-            free::Block { transition: [a, b, c, d], drive: [e, f], gimbal_angle: [g, h], motor_torque: [i, j] }
+            let [a, b, c, d, e, f] = at(&self.blocks[block], lane);
+            free::Block { transition: [a, b, c, d], drive: [e, f] }
         };
-        let [transition, drive, gimbal_angle, motor_torque] = at(&self.single, lane);
-        let single = free::Single { transition, drive, gimbal_angle, motor_torque };
-        let [gimbal_angle, motor_torque, gimbal_rate_gain] = at(&self.change, lane);
+        let [transition, drive] = at(&self.single, lane);
+        let [gimbal_rate_gain, gimbal_angle_gain] = at(&self.change, lane);
         free::Law {
-            gimbal_rate: Row { coefs: at(&self.gimbal_rate, lane) },
+            gimbal_rate: at(&self.gimbal_rate, lane),
+            gimbal_angle: at(&self.gimbal_angle, lane),
+            gimbal_rate_gain,
+            gimbal_angle_gain,
             blocks: [block(0), block(1), block(2), block(3)],
-            single,
-            gimbal_angle,
-            motor_torque,
+            single: free::Single { transition, drive },
+            // What the straight path does not read.
             gyro_angle: Row { coefs: [0.0; ORDER + 1] },
-            gimbal_rate_gain: Row { coefs: [gimbal_rate_gain] },
-            gyro_move: UNREAD,
-            motor: [UNREAD; 6],
-            entry: [UNREAD; ORDER],
         }
     }
 }
 
-/// What the straight path does not read.
-const UNREAD: ScaledRow<f32, ORDER> = ScaledRow { coefs: [0.0; ORDER], shift: 0 };
-
-fn side_by_side<const C: usize, const L: usize>(
+fn side_by_side<T: Copy + Default, const C: usize, const L: usize>(
     laws: &[&Law<f32>; L],
-    coefs: impl Fn(&Law<f32>) -> [f32; C],
-) -> [Lanes<L>; C] {
-    let mut table = [[0.0; L]; C];
+    coefs: impl Fn(&Law<f32>) -> [T; C],
+) -> [[T; L]; C] {
+    let mut table = [[T::default(); L]; C];
     for (lane, law) in laws.iter().enumerate() {
         for (lanes, coef) in table.iter_mut().zip(coefs(law)) {
             lanes[lane] = coef;
@@ -162,6 +159,6 @@ fn side_by_side<const C: usize, const L: usize>(
 }
 
 #[inline(always)]
-fn at<const C: usize, const L: usize>(table: &[Lanes<L>; C], lane: usize) -> [f32; C] {
+fn at<T: Copy, const C: usize, const L: usize>(table: &[[T; L]; C], lane: usize) -> [T; C] {
     core::array::from_fn(|i| table[i][lane])
 }

@@ -107,9 +107,9 @@ impl<const L: usize> Levels<L> {
             self.load[lane] = law.load(axial, radial);
             segments[lane] = segment(coefs.first_power[lane], self.static_load[lane]);
             change |= segments[lane] ^ self.power.segment[lane];
-            self.speed[lane] = (rows.vehicle_rate_radps[lane] - last.gimbal_rate[lane]).abs();
+            self.speed[lane] = (rows.vehicle_rate_radps[lane] - last.sensed_rate[lane]).abs();
             let viscous = segment(coefs.first_viscous[lane], self.speed[lane]);
-            let is_high = self.speed[lane] > law.viscous_break;
+            let is_high = self.speed[lane].beyond(law.viscous_break);
             viscous_segments[lane] = if is_high { viscous } else { self.viscous.segment[lane] };
             viscous_change |= viscous_segments[lane] ^ self.viscous.segment[lane];
         }
@@ -119,7 +119,7 @@ impl<const L: usize> Levels<L> {
         for lane in 0..L {
             let law = coefs.level(lane);
             let high = self.viscous.at(lane, self.speed[lane]);
-            let viscous = if self.speed[lane] > law.viscous_break { high } else { law.viscous_low };
+            let viscous = if self.speed[lane].beyond(law.viscous_break) { high } else { law.viscous_low };
             levels[lane] = self.power.at(lane, self.static_load[lane]).times(self.load[lane]) + viscous;
         }
     }

@@ -15,7 +15,7 @@ pub(super) struct Memory<const L: usize> {
     pub(super) torque: [f32; L],
     pub(super) gyro_angle: [f32; L],
     pub(super) gimbal_angle: [f32; L],
-    pub(super) gimbal_rate: [f32; L],
+    pub(super) sensed_rate: [f32; L],
     pub(super) relative_rate: [f32; L],
     pub(super) free: [[f32; L]; ORDER],
     pub(super) carry: [[f32; L]; 2],
@@ -38,7 +38,7 @@ impl<const L: usize> Memory<L> {
             torque: zero,
             gyro_angle: zero,
             gimbal_angle: zero,
-            gimbal_rate: zero,
+            sensed_rate: zero,
             relative_rate: zero,
             free: [zero; ORDER],
             carry: [zero; 2],
@@ -59,10 +59,12 @@ impl<const L: usize> Memory<L> {
         state.torque = self.torque[lane];
         state.gyro_angle = self.gyro_angle[lane];
         state.gimbal_angle = self.gimbal_angle[lane];
-        state.gimbal_rate = self.gimbal_rate[lane];
+        state.sensed_rate = self.sensed_rate[lane];
         state.relative_rate = self.relative_rate[lane];
         state.free = self.modes(lane);
-        *state.ins.parts().0 = [self.carry[0][lane], self.carry[1][lane]];
+        for (sums, carries) in state.ins.0.iter_mut().zip(&self.carry) {
+            sums.carry = carries[lane];
+        }
     }
 
     /// Takes a lane's part of a state.
@@ -79,14 +81,13 @@ impl<const L: usize> Memory<L> {
         self.torque[lane] = state.torque;
         self.gyro_angle[lane] = state.gyro_angle;
         self.gimbal_angle[lane] = state.gimbal_angle;
-        self.gimbal_rate[lane] = state.gimbal_rate;
+        self.sensed_rate[lane] = state.sensed_rate;
         self.relative_rate[lane] = state.relative_rate;
         for (modes, mode) in self.free.iter_mut().zip(state.free) {
             modes[lane] = mode;
         }
-        let mut ins = state.ins;
-        for (carries, carry) in self.carry.iter_mut().zip(*ins.parts().0) {
-            carries[lane] = carry;
+        for (carries, sums) in self.carry.iter_mut().zip(&state.ins.0) {
+            carries[lane] = sums.carry;
         }
     }
 }

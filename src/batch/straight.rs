@@ -18,8 +18,9 @@ pub(super) struct Course<const L: usize> {
     pub(super) stays: [u32; L],
     other: [f32; L],
     friction_level: [f32; L],
-    quiet_change: [f32; L],
     quiet_rate: [f32; L],
+    /// What the modes make of phi.
+    quiet_angle: [f32; L],
     brake: [f32; L],
     free_end: [f32; L],
     share: [f32; L],
@@ -47,8 +48,8 @@ impl<const L: usize> Course<L> {
             stays: [0; L],
             other: zero,
             friction_level: zero,
-            quiet_change: zero,
             quiet_rate: zero,
+            quiet_angle: zero,
             brake: zero,
             free_end: zero,
             share: zero,
@@ -70,26 +71,27 @@ impl<const L: usize> Course<L> {
         for lane in 0..L {
             let row = rows.lane(lane);
             self.stays[lane] &= mask(coefs.guard(lane).admits(&row));
-            let unbalance = coefs.unbalance(lane).at(&[row.accel_x_mps2, row.accel_y_mps2]);
-            others.unbalance_torque[lane] = unbalance;
-            next.other_torque[lane] = unbalance + row.torque_nm;
+            let (unbalance, accel) = (coefs.unbalance(lane), [row.accel_x_mps2, row.accel_y_mps2]);
+            others.unbalance_torque[lane] = unbalance.at(&accel);
+            next.other_torque[lane] = unbalance.above(row.torque_nm, &accel);
         }
         for lane in 0..L {
-            let vehicle_rate;
+            let end_rate;
             if coefs.held_inputs {
-                self.other[lane] = last.other_torque[lane];
-                self.friction_level[lane] = last.friction_level[lane];
-                vehicle_rate = last.row.vehicle_rate_radps[lane];
+                self.other[lane] = last.other_torque[lane] + last.other_torque[lane];
+                self.friction_level[lane] = last.friction_level[lane] + last.friction_level[lane];
+                end_rate = last.relative_rate[lane] + last.sensed_rate[lane];
             } else {
-                self.other[lane] = last.other_torque[lane].half() + next.other_torque[lane].half();
-                self.friction_level[lane] = last.friction_level[lane].half() + next.friction_level[lane].half();
-                vehicle_rate = rows.vehicle_rate_radps[lane];
+                self.other[lane] = last.other_torque[lane] + next.other_torque[lane];
+                self.friction_level[lane] = last.friction_level[lane] + next.friction_level[lane];
+                end_rate = rows.vehicle_rate_radps[lane];
             }
             let free = coefs.free(lane);
-            self.quiet_change[lane] = self.other[lane] - last.torque[lane];
-            self.quiet_rate[lane] = free.gimbal_rate(&Heads::of(&last.modes(lane)), self.quiet_change[lane]);
-            self.brake[lane] = free.gimbal_rate_gain.at(&[self.friction_level[lane]]);
-            self.free_end[lane] = vehicle_rate - self.quiet_rate[lane];
+            let (rate, angle) = free.quiet(&Heads::of(&last.modes(lane)));
+            self.quiet_rate[lane] = rate + free.gimbal_rate_gain * (self.other[lane] - last.torque[lane]);
+            self.quiet_angle[lane] = angle;
+            self.brake[lane] = free.gimbal_rate_gain * self.friction_level[lane];
+            self.free_end[lane] = end_rate - self.quiet_rate[lane];
         }
     }
 
@@ -116,7 +118,7 @@ impl<const L: usize> Course<L> {
             let law = coefs.friction(lane);
             let start = last.relative_rate[lane];
             let zone = law.zone(start, self.free_end[lane], self.brake[lane]);
-            let stays = mask(start.abs() <= law.slip_rate) & mask(zone.is_kept());
+            let stays = mask(start.abs() < law.slip_rate) & mask(zone.is_kept());
             self.share[lane] = if self.settled[lane] == 0 { zone.mean() } else { self.share[lane] };
             self.settled[lane] |= stays;
         }
@@ -144,24 +146,26 @@ impl<const L: usize> Course<L> {
             let mut modes = last.modes(lane);
             let heads = Heads::of(&modes);
             let torque = self.other[lane] + self.friction_level[lane].times(self.share[lane]);
-            let change = torque - last.torque[lane] + coefs.stir[lane];
-            let gimbal_rate = self.quiet_rate[lane] + free.gimbal_rate_gain.at(&[change - self.quiet_change[lane]]);
-            let moved = free.advance(&mut modes, &heads, change);
-            let gimbal_angle = offset[lane] + moved.gimbal_angle;
-            self.stays[lane] &= mask(moved.gyro_angle.within(coefs.stop_angle[lane]))
-                & mask(gimbal_angle.within(coefs.small_angle[lane]));
-            let relative_rate = rows.vehicle_rate_radps[lane] - gimbal_rate;
+            let change = (torque - last.torque[lane]).stirred();
+            let sensed_rate = self.quiet_rate[lane] + self.brake[lane].times(self.share[lane]);
+            let gyro_angle = free.advance(&mut modes, &heads, change);
+            let gimbal_angle = offset[lane] + (self.quiet_angle[lane] + free.gimbal_angle_gain * change);
+            self.stays[lane] &=
+                mask(!gyro_angle.beyond(coefs.stop_limit[lane])) & mask(!gimbal_angle.beyond(coefs.small_angle[lane]));
+            let relative_rate = rows.vehicle_rate_radps[lane] - sensed_rate;
             let friction = next.friction_level[lane].times(coefs.friction(lane).clamp(relative_rate));
 
             for (next, mode) in next.free.iter_mut().zip(modes) {
                 next[lane] = mode;
             }
             next.torque[lane] = torque;
-            next.gyro_angle[lane] = moved.gyro_angle;
+            next.gyro_angle[lane] = gyro_angle;
             next.gimbal_angle[lane] = gimbal_angle;
-            next.gimbal_rate[lane] = gimbal_rate;
+            next.sensed_rate[lane] = sensed_rate;
             next.relative_rate[lane] = relative_rate;
-            others.motor_torque[lane] = torque + moved.motor_torque;
+            others.gimbal_rate[lane] = sensed_rate;
+            others.disturbance_torque[lane] = torque.half();
+            others.motor_torque[lane] = torque.half() + coefs.motor_torque(lane).at(&modes);
             others.friction_torque[lane] = friction;
             others.stop_change_age[lane] = 0.0;
         }
@@ -172,10 +176,10 @@ impl<const L: usize> Course<L> {
     #[inline(always)]
     pub(super) fn count(&mut self, coefs: &Coefs<L>, last: &Memory<L>, rows: &Rows<L>, next: &mut Memory<L>) {
         for lane in 0..L {
-            let scaled = f32::count_scaled(next.gimbal_angle[lane], coefs.ins_scale[lane]);
+            let scaled = f32::coarse_scaled(next.gimbal_angle[lane], coefs.ins_scale[lane]);
             let exact = [
                 rows.accel_y_mps2[lane] * scaled + last.carry[0][lane],
-                -rows.accel_x_mps2[lane] * scaled + last.carry[1][lane],
+                rows.accel_x_mps2[lane] * scaled + last.carry[1][lane],
             ];
             let whole = exact.map(whole);
             self.counts[0][lane] = whole[0];

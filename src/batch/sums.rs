@@ -27,13 +27,11 @@ impl<const L: usize> Sums<L> {
 
     /// Adds a lane's parts to the whole.
     pub(super) fn complete(&self, lane: usize, state: &mut ins::State<f32>) {
-        let rows = i128::from(self.rows - self.had[lane]);
-        let (_, sums) = state.parts();
-        for axis in 0..2 {
-            let whole = i128::from(sums.velocity[axis]) * rows;
-            let position = whole + i128::from(self.position[axis][lane]);
-            sums.position[axis] = sums.position[axis].wrapping_add(position);
-            sums.velocity[axis] = sums.velocity[axis].wrapping_add(self.velocity[axis][lane]);
+        let rows = i64::from(self.rows - self.had[lane]);
+        for (axis, sums) in state.0.iter_mut().enumerate() {
+            let position = sums.velocity.wrapping_mul(rows).wrapping_add(self.position[axis][lane]);
+            sums.position = sums.position.wrapping_add(position);
+            sums.velocity = sums.velocity.wrapping_add(self.velocity[axis][lane]);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Size of the friction torque in the step: Palmgren's formulas on tables.
 
 use crate::Config;
+use crate::faults::Faults;
 use crate::number::Number;
 use crate::row::Row;
 use crate::table::{PowerTable, SqrtTable};
@@ -8,21 +9,23 @@ use crate::units::Units;
 
 /// Size of the friction torque of all bearings, for one row of inputs.
 ///
-/// (6.1) and (6.2) cross where one ends and the other begins, so that their larger one is the load.
+/// (6.1) and (6.2) cross where one ends and the other begins, so that their larger one is the load. Loads are counted as
+/// the radial acceleration that makes them: (6.2)'s is `A_r` itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub(crate) struct Law<N: Number> {
     pub(crate) largest_radial: N,
     /// `F_s` of `|a_z|` and `A_r`, less its part from the preload.
     pub(crate) static_load: Row<N, 2>,
-    pub(crate) static_preload: N,
     /// (6.1)'s load, likewise.
     pub(crate) axial_load: Row<N, 2>,
-    pub(crate) axial_preload: N,
-    /// (6.2)'s load of `A_r`.
-    pub(crate) radial_load: Row<N, 1>,
+    pub(crate) static_preload: N::Wide,
+    pub(crate) axial_preload: N::Wide,
+    /// `A_r` to the full scale of loads.
+    pub(crate) load_shift: u32,
     /// From the product of power and load to the full scale of torques.
     pub(crate) shift: u32,
-    pub(crate) viscous_break: N,
+    pub(crate) viscous_break: u32,
     pub(crate) viscous_low: N,
 }
 
@@ -33,19 +36,6 @@ pub(crate) struct Tables<N: Number> {
     /// `c n F_s^0.33`, n the number of bearings.
     pub(crate) power: PowerTable<N>,
     pub(crate) viscous_high: PowerTable<N>,
-}
-
-impl<N: Number> Tables<N> {
-    /// Square roots.
-    pub(crate) fn sqrt(&self) -> &SqrtTable<N> {
-        &self.sqrt
-    }
-}
-
-/// The friction level and whether an input lay beyond the tables.
-pub(crate) struct Level<N> {
-    pub(crate) torque: N,
-    pub(crate) table_end: bool,
 }
 
 impl<N: Number> Law<N> {
@@ -59,15 +49,18 @@ impl<N: Number> Law<N> {
         let (fa, fr) = (bearing.static_axial_factor, bearing.static_radial_factor);
         let (ta, tr) = (bearing.torque_axial_factor, bearing.torque_radial_factor);
         let largest_static = fa * most_axial + fr * most_radial;
-        let largest_load = (ta * most_axial).max(most_radial);
+        let radial_share = most_radial / range.radial_accel_mps2;
+        let largest_load = (ta * most_axial).max(most_radial) / radial_share;
 
         // Each term has room for the full scale of the acceleration, which may be far above the axial one's range.
         let accel = [units.accel; 2];
         let scale =
             |largest: f64, factors: [f64; 2]| N::exponent(2.0 * largest).max(Row::<N, 2>::exponent(factors, accel));
         let static_scale = scale(largest_static, [fa * share, fr * share]);
-        let load_scale = scale(largest_load, [ta * share, share.max(tr * share)]);
-        let power = |load: f64| count * bearing.load_torque_nm_per_n * libm::pow(load, bearing.load_exponent);
+        let axial_load = [ta * share / radial_share, -tr * share / radial_share];
+        let load_scale = scale(largest_load, axial_load).max(units.accel);
+        let power =
+            |load: f64| count * bearing.load_torque_nm_per_n * libm::pow(load, bearing.load_exponent) * radial_share;
         let smallest_static = fa * preload;
         let steepest = bearing.load_exponent * power(smallest_static) / smallest_static;
         let power_scale =
@@ -86,40 +79,44 @@ impl<N: Number> Law<N> {
         let law = Self {
             largest_radial: N::quantise(range.radial_accel_mps2, units.accel),
             static_load: Row::build([fa * share, fr * share], accel, static_scale),
-            static_preload: N::quantise(smallest_static, static_scale),
-            axial_load: Row::build([ta * share, -tr * share], accel, load_scale),
-            axial_preload: N::quantise(ta * preload, load_scale),
-            radial_load: Row::build([share], [units.accel], load_scale),
+            axial_load: Row::build(axial_load, accel, load_scale),
+            static_preload: N::quantise(smallest_static, static_scale).widen(),
+            axial_preload: N::quantise(ta * preload / radial_share, load_scale).widen(),
+            load_shift: (load_scale - units.accel).unsigned_abs(),
             shift: (power_scale + load_scale - units.torque).unsigned_abs(),
-            viscous_break: N::quantise(viscous_break.min(range.rate_radps), units.rate),
+            viscous_break: N::quantise(viscous_break.min(range.rate_radps), units.rate).limit(),
             viscous_low: N::quantise(viscous(0.0), units.torque),
         };
         (law, tables)
     }
 
-    /// Friction level under the specific force at the relative rate `rate`.
+    /// Friction level under the specific force at the relative rate `rate`; it sets the bit if it lies beyond the tables.
     #[inline(always)]
-    pub(crate) fn at(&self, tables: &Tables<N>, [accel_x, accel_y, accel_z]: [N; 3], rate: N) -> Level<N> {
-        let radial = accel_x.hypot(accel_y, &tables.sqrt);
-        let table_end = radial > self.largest_radial;
-        let radial = radial.least(self.largest_radial);
+    pub(crate) fn at(&self, tables: &Tables<N>, accel: [N; 3], rate: N, faults: &mut Faults) -> N {
+        let [accel_x, accel_y, accel_z] = accel;
+        let mut radial = accel_x.hypot(accel_y, &tables.sqrt);
+        if radial > self.largest_radial {
+            radial = self.largest_radial;
+            *faults |= Faults::TABLE_END;
+        }
         let axial = accel_z.abs();
         let power = tables.power.at(self.static_load(axial, radial));
         let load = self.load(axial, radial);
-        let speed = rate.abs();
-        let viscous = if speed > self.viscous_break { tables.viscous_high.at(speed) } else { self.viscous_low };
-        Level { torque: power.times(load).shift_up(self.shift) + viscous, table_end }
+        let viscous =
+            if rate.beyond(self.viscous_break) { tables.viscous_high.at(rate.abs()) } else { self.viscous_low };
+        power.times(load).times_power(self.shift) + viscous
     }
 
     /// `F_s`.
     #[inline(always)]
     pub(crate) fn static_load(&self, axial: N, radial: N) -> N {
-        self.static_preload + self.static_load.at(&[axial, radial])
+        self.static_load.above(self.static_preload, &[axial, radial])
     }
 
     /// What the power of `F_s` is multiplied by.
     #[inline(always)]
     pub(crate) fn load(&self, axial: N, radial: N) -> N {
-        (self.axial_preload + self.axial_load.at(&[axial, radial])).most(self.radial_load.at(&[radial]))
+        let axial_load = self.axial_load.above(self.axial_preload, &[axial, radial]);
+        axial_load.most(radial.shift_down(self.load_shift))
     }
 }

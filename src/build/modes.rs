@@ -41,6 +41,8 @@ pub(crate) struct Modes {
     plant: Plant,
     pairs: [Pair; BLOCKS],
     single: f64,
+    /// The period over which the second coordinate of a block is the first one's change.
+    step: Option<f64>,
 }
 
 /// Scale of a complex mode's imaginary part, which is no part of theta: too small to be seen in the sum.
@@ -81,12 +83,22 @@ impl Modes {
             }
         }
         let single = pair_reals(&mut reals[..real_count], &mut pairs[pair_count..]);
-        Ok(Self { plant: *plant, pairs, single })
+        Ok(Self { plant: *plant, pairs, single, step: None })
+    }
+
+    /// The same modes in other coordinates: of each block its part of theta, and what a period changes of it while
+    /// nothing drives it. These take fewer products, `x_0 + x_1` instead of two, and need a wide range of sizes.
+    pub(crate) fn in_steps(&self, period: f64) -> Self {
+        Self { step: Some(period), ..*self }
     }
 
     /// `e^(M T) - 1` of each block over `period`, and of the single mode.
     pub(crate) fn transition(&self, period: f64) -> ([Square; BLOCKS], f64) {
         let blocks = self.pairs.map(|pair| {
+            if self.step == Some(period) {
+                let [sum, product] = pair.changes(period);
+                return [0.0, 1.0, -product, sum];
+            }
             let natural = match pair {
                 Pair::Complex(pole) => {
                     let change = exp_minus_one(pole.scale(period));
@@ -94,7 +106,7 @@ impl Modes {
                 }
                 Pair::Real(first, second) => [libm::expm1(first * period), 0.0, 0.0, libm::expm1(second * period)],
             };
-            let coordinates = pair.coordinates();
+            let coordinates = pair.coordinates(self.step);
             product(product(coordinates, natural), inverse(coordinates))
         });
         (blocks, libm::expm1(self.single * period))
@@ -104,7 +116,7 @@ impl Modes {
     pub(crate) fn row(&self, of: impl Fn(Complex) -> Complex) -> [f64; ORDER] {
         let mut row = [0.0; ORDER];
         for (place, &pair) in row.chunks_exact_mut(2).zip(&self.pairs) {
-            let back = inverse(pair.coordinates());
+            let back = inverse(pair.coordinates(self.step));
             let [first, second] = match pair {
                 Pair::Complex(pole) => [of(pole).re, -of(pole).im],
                 Pair::Real(first, second) => [of(Complex::real(first)).re, of(Complex::real(second)).re],
@@ -120,7 +132,7 @@ impl Modes {
     pub(crate) fn column(&self, weight: impl Fn(Complex) -> Complex) -> [f64; ORDER] {
         let mut column = [0.0; ORDER];
         for (place, &pair) in column.chunks_exact_mut(2).zip(&self.pairs) {
-            let coordinates = pair.coordinates();
+            let coordinates = pair.coordinates(self.step);
             let [first, second] = match pair {
                 // A pole and its conjugate together add twice the real part.
                 Pair::Complex(pole) => [2.0 * weight(pole).re, 2.0 * weight(pole).im],
@@ -151,13 +163,13 @@ impl Modes {
         for (place, &pair) in bounds.chunks_exact_mut(2).zip(&self.pairs) {
             match pair {
                 Pair::Complex(pole) => {
-                    let coordinates = pair.coordinates();
+                    let coordinates = pair.coordinates(self.step);
                     place[0] = 2.0 * size(pole) * libm::hypot(coordinates[0], coordinates[1]);
                     place[1] = 2.0 * size(pole) * libm::hypot(coordinates[2], coordinates[3]);
                 }
                 Pair::Real(first, second) => {
                     let [first, second] = [size(Complex::real(first)), size(Complex::real(second))];
-                    let coordinates = pair.coordinates();
+                    let coordinates = pair.coordinates(self.step);
                     place[0] = coordinates[0].abs() * first + coordinates[1].abs() * second;
                     place[1] = coordinates[2].abs() * first + coordinates[3].abs() * second;
                 }
@@ -199,19 +211,40 @@ impl Modes {
 impl Pair {
     /// Coordinates of a block from the amplitudes of its two modes: the real and imaginary part of a complex one, whose
     /// real part is its theta, and the imaginary part made small; the two thetas of real ones.
-    fn coordinates(self) -> Square {
-        match self {
-            Self::Complex(pole) => {
+    fn coordinates(self, step: Option<f64>) -> Square {
+        match (self, step) {
+            (Self::Complex(pole), Some(period)) => {
+                let change = exp_minus_one(pole.scale(period));
+                [1.0, 0.0, change.re, -change.im]
+            }
+            (Self::Real(first, second), Some(period)) => {
+                [1.0, 1.0, libm::expm1(first * period), libm::expm1(second * period)]
+            }
+            (Self::Complex(pole), None) => {
                 // Nearly real: a sine of large amplitude and slow phase, scaled to what it becomes before it decays.
                 let slowness = if pole.im < 0.5 * pole.re.abs() { pole.im / pole.abs() } else { 1.0 };
                 [1.0, -ASIDE * slowness, 0.0, ASIDE * slowness]
             }
             // Nearly equal poles: their sum and their divided difference, which stay finite as the poles meet.
-            Self::Real(first, second) if nearly_equal(first, second) => {
+            (Self::Real(first, second), None) if nearly_equal(first, second) => {
                 let difference = (second - first) / first;
                 [1.0, 1.0 - difference, 0.0, difference]
             }
-            Self::Real(..) => [1.0, 0.0, 0.0, 1.0],
+            (Self::Real(..), None) => [1.0, 0.0, 0.0, 1.0],
+        }
+    }
+
+    /// Sum and product of what a period makes of a mode, less the mode.
+    fn changes(self, period: f64) -> [f64; 2] {
+        match self {
+            Self::Complex(pole) => {
+                let change = exp_minus_one(pole.scale(period));
+                [2.0 * change.re, change.re * change.re + change.im * change.im]
+            }
+            Self::Real(first, second) => {
+                let (first, second) = (libm::expm1(first * period), libm::expm1(second * period));
+                [first + second, first * second]
+            }
         }
     }
 }

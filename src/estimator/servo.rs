@@ -50,7 +50,8 @@ impl<N: Number> Law<N> {
         let [integrator, lags @ ..] = &mut state.servo;
         *integrator = N::confine(*integrator + servo.integrator.increment(&[state.servo_theta, theta]));
         for (lag, (decay, gain)) in lags.iter_mut().zip(servo.decay.iter().zip(&servo.lags)) {
-            *lag = N::confine(N::low(*lag) + *decay * N::narrow(*lag) + gain.increment(&[change]));
+            let head = N::narrow(*lag);
+            *lag = N::confine(N::kept(*lag, head) + *decay * head + gain.increment(&[change]));
         }
         state.servo_theta = theta;
         state.torque_waiting = state.torque;

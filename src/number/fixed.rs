@@ -109,17 +109,31 @@ impl Sub for Wide {
 impl Number for Fixed {
     type Coef = Coef;
     type Wide = Wide;
+    type Carry = i64;
+    type CountScale = u32;
 
     const ZERO: Self = Self(0);
     const ONE: Self = Self(LARGEST);
     const HALF_BIT: Wide = Wide(1 << 30);
     const SQRT_LOWEST: f64 = 0.25;
+    const SQRT_GAIN: f64 = core::f64::consts::FRAC_1_SQRT_2;
     const HAS_SCALES: bool = true;
     const TAG: u8 = b'q';
 
     #[inline(always)]
     fn head(wide: Wide) -> Self {
         Self((wide.0 >> 31) as i32)
+    }
+
+    #[inline(always)]
+    fn as_words<const L: usize>(values: [Self; L]) -> [Self; L] {
+        core::hint::black_box(values)
+    }
+
+    #[inline(always)]
+    fn exceeds(wide: Wide, limit: u32) -> bool {
+        // The upper word alone, in which a sum beyond the full scale has room.
+        Self((wide.0 >> 32) as i32).beyond(limit >> 1)
     }
 
     #[inline(always)]
@@ -148,7 +162,7 @@ impl Number for Fixed {
     }
 
     #[inline(always)]
-    fn low(wide: Wide) -> Wide {
+    fn kept(wide: Wide, _head: Self) -> Wide {
         Wide(wide.0 & i64::from(LARGEST))
     }
 
@@ -176,6 +190,11 @@ impl Number for Fixed {
     #[inline(always)]
     fn shift_up(self, shift: u32) -> Self {
         Self::saturate(i64::from(self.0) << shift.min(31))
+    }
+
+    #[inline(always)]
+    fn times_power(self, shift: u32) -> Self {
+        Self(self.0.wrapping_shl(shift))
     }
 
     /// The reciprocal of the normalised divisor to 16 bits by one 32-bit division, to 30 bits by one Newton step.
@@ -206,19 +225,22 @@ impl Number for Fixed {
     #[inline(always)]
     fn hypot(self, other: Self, table: &SqrtTable<Self>) -> Self {
         let square = i64::from(self.0) * i64::from(self.0) + i64::from(other.0) * i64::from(other.0);
-        // Two components near the full scale have a root beyond it, which is then the full scale.
-        let top = (square >> 31).min(i64::from(LARGEST)) as i32;
-        let positive = top.max(1) as u32;
+        // Two components near the full scale have a root beyond it: the upper word has room up to 2, as 30 bits of
+        // fraction, and never its sign bit. A one more at the end keeps the leading one defined.
+        let positive = (square >> 32) as u32 | 1;
         // An even shift that brings the leading one to bit 29 or 30.
         let shift = (positive.leading_zeros() - 1) & !1;
         let mantissa = positive << shift;
         let segment = if mantissa < 1 << 30 { (mantissa >> 24) - 32 } else { mantissa >> 25 };
-        Self(table.chord(segment, Self(mantissa as i32)).0 >> (shift / 2))
+        // The table has half of the root of twice the mantissa; doubled, it saturates.
+        let half = Self(table.chord(segment, Self(mantissa as i32)).0 >> (shift / 2));
+        half + half
     }
 
     #[inline(always)]
     fn sixteenth(self) -> i32 {
-        let positive = self.0.max(1) as u32;
+        // A one more at the end keeps the leading one defined.
+        let positive = self.0 as u32 | 1;
         let zeros = positive.leading_zeros();
         // The leading one itself counts as 16.
         ((31 - zeros) * 16 + (positive << zeros >> 27)) as i32 - 16
@@ -242,6 +264,25 @@ impl Number for Fixed {
         self != NOT_A_NUMBER
     }
 
+    fn limit(self) -> u32 {
+        self.0 as u32
+    }
+
+    fn of_limit(limit: u32) -> Self {
+        Self(limit as i32)
+    }
+
+    #[inline(always)]
+    fn beyond(self, limit: u32) -> bool {
+        // NOT_A_NUMBER plus any limit is above twice the limit.
+        (self.0 as u32).wrapping_add(limit) > limit << 1
+    }
+
+    #[inline(always)]
+    fn stirred(self) -> Self {
+        self
+    }
+
     #[inline(always)]
     fn count_scaled(signal: Self, _scale: Coef) -> Self {
         signal
@@ -253,6 +294,37 @@ impl Number for Fixed {
         let exact = i64::from(left.0) * i64::from(scaled.0) + i64::from(carry.0 as u32);
         *carry = Self(exact as i32);
         (exact >> 32) as i32
+    }
+
+    /// A product has 62 fraction bits; a count has its lowest bit at 2^32 or above.
+    fn count_scale(exponent: i32, product: i32) -> u32 {
+        (exponent - product + 30).clamp(0, 30).unsigned_abs()
+    }
+
+    #[inline(always)]
+    fn coarse_scaled(signal: Self, _scale: u32) -> Self {
+        signal
+    }
+
+    #[inline(always)]
+    fn count_coarse(left: Self, scaled: Self, scale: u32, carry: &mut i64) -> i32 {
+        let exact = i64::from(left.0) * i64::from(scaled.0) + *carry;
+        let high = (exact >> 32) as i32;
+        let whole = high.wrapping_shr(scale);
+        *carry = exact - (i64::from(whole.wrapping_shl(scale)) << 32);
+        whole
+    }
+
+    fn carried(carry: i64, scale: u32) -> f64 {
+        libm::ldexp(carry as f64, -32 - scale as i32)
+    }
+
+    fn carry_to_bits(carry: i64) -> u64 {
+        carry as u64
+    }
+
+    fn carry_from_bits(bits: u64) -> i64 {
+        bits as i64
     }
 
     fn exponent(bound: f64) -> i32 {

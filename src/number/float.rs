@@ -42,17 +42,30 @@ impl Square {
 impl Number for f32 {
     type Coef = f32;
     type Wide = f32;
+    type Carry = f32;
+    type CountScale = f32;
 
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const HALF_BIT: f32 = 0.0;
     const SQRT_LOWEST: f64 = 1.0;
+    const SQRT_GAIN: f64 = 1.0;
     const HAS_SCALES: bool = false;
     const TAG: u8 = b'f';
 
     #[inline(always)]
     fn head(wide: f32) -> f32 {
         wide
+    }
+
+    #[inline(always)]
+    fn as_words<const L: usize>(values: [f32; L]) -> [f32; L] {
+        values
+    }
+
+    #[inline(always)]
+    fn exceeds(wide: f32, limit: u32) -> bool {
+        wide.beyond(limit)
     }
 
     #[inline(always)]
@@ -81,8 +94,8 @@ impl Number for f32 {
     }
 
     #[inline(always)]
-    fn low(wide: f32) -> f32 {
-        wide
+    fn kept(_wide: f32, head: f32) -> f32 {
+        head
     }
 
     #[inline(always)]
@@ -107,6 +120,11 @@ impl Number for f32 {
 
     #[inline(always)]
     fn shift_up(self, _shift: u32) -> f32 {
+        self
+    }
+
+    #[inline(always)]
+    fn times_power(self, _shift: u32) -> f32 {
         self
     }
 
@@ -153,6 +171,25 @@ impl Number for f32 {
         self.is_finite()
     }
 
+    fn limit(self) -> u32 {
+        self.to_bits() << 1
+    }
+
+    fn of_limit(limit: u32) -> f32 {
+        f32::from_bits(limit >> 1)
+    }
+
+    #[inline(always)]
+    fn beyond(self, limit: u32) -> bool {
+        // Without its sign, as an integer, in which a NaN is larger than every limit.
+        self.to_bits() << 1 > limit
+    }
+
+    #[inline(always)]
+    fn stirred(self) -> f32 {
+        self + 1e-25
+    }
+
     #[inline(always)]
     fn count_scaled(signal: f32, scale: f32) -> f32 {
         signal * scale
@@ -165,6 +202,32 @@ impl Number for f32 {
         // A whole f32 above 2^24 has no fraction to lose.
         *carry = exact - whole as f32;
         whole
+    }
+
+    fn count_scale(exponent: i32, _product: i32) -> f32 {
+        libm::ldexp(1.0, -exponent) as f32
+    }
+
+    #[inline(always)]
+    fn coarse_scaled(signal: f32, scale: f32) -> f32 {
+        Self::count_scaled(signal, scale)
+    }
+
+    #[inline(always)]
+    fn count_coarse(left: f32, scaled: f32, _scale: f32, carry: &mut f32) -> i32 {
+        Self::count(left, scaled, carry)
+    }
+
+    fn carried(carry: f32, _scale: f32) -> f64 {
+        f64::from(carry)
+    }
+
+    fn carry_to_bits(carry: f32) -> u64 {
+        u64::from(carry.to_bits())
+    }
+
+    fn carry_from_bits(bits: u64) -> f32 {
+        f32::from_bits(bits as u32)
     }
 
     fn exponent(_bound: f64) -> i32 {

@@ -1,10 +1,11 @@
-//! The whole step.
+//! The whole step: what has to be done in every period. The outputs that are worked out when asked for are a row of their
+//! own.
 
 use crate::tally::Tally;
 use core::hint::black_box;
 use gimbal_firmware::cases::{Case, FLIGHT, STOPS};
 use gimbal_firmware::counter::Counter;
-use gimbal_servo::{Config, Number};
+use gimbal_servo::{Config, Faults, Number};
 
 /// The flight without a part of the model; what it saves is what that part costs.
 const WITHOUT_FRICTION: Case = Case { name: "flight-without-friction", config: without_friction, ..FLIGHT };
@@ -25,21 +26,27 @@ pub(crate) fn count<N: Number>(counter: &mut Counter, case: &Case, number: &str)
     let built = (case.config)().build::<N>();
     let Ok(law) = &built else { return Err("the law cannot be built") };
     let mut state = law.start();
-    let (mut all, mut events) = (Tally::EMPTY, Tally::EMPTY);
+    let [mut all, mut events, mut outputs] = [Tally::EMPTY; 3];
     // The first call has no period behind it and does less.
-    let mut output = law.step(&mut state, case.input(law, 0));
+    law.advance(&mut state, &case.input(law, 0));
     let steps = if cfg!(feature = "brief") { 200 } else { case.steps };
     for k in 1..steps {
         // Hidden from the compiler outside of what is counted.
         let input = black_box(case.input(law, k));
-        let count = counter.count(|| output = law.step(&mut state, input));
-        output = black_box(output);
+        let mut faults = Faults::NONE;
+        let count = counter.count(|| faults = law.advance(&mut state, &input));
+        black_box(faults);
         all.add(count);
-        if output.stop_change_age != N::default() {
+        let mut output = None;
+        outputs.add(counter.count(|| output = Some(law.output(&state))));
+        if black_box(output).is_some_and(|output| output.stop_change_age != N::default()) {
             events.add(count);
         }
     }
     all.print("cost", case.name, number);
+    if case.name == FLIGHT.name {
+        outputs.print("cost", "output", number);
+    }
     events.print("cost-events", case.name, number);
     Ok(())
 }
