@@ -111,17 +111,19 @@ impl<N: Number> Law<N> {
     #[inline(always)]
     fn move_free(&self, state: &mut State<N>, acting: &Acting<N>, faults: &mut Faults) -> Moved<N> {
         let heads = Heads::of(&state.free);
-        let quiet_change = (acting.other - state.torque).stirred();
+        let quiet_change = acting.other - state.torque;
         let (rate, angle) = self.free.quiet(&heads);
         let quiet_rate = N::head(rate + self.free.gimbal_rate_gain * quiet_change);
         let brake = N::head(self.free.gimbal_rate_gain * acting.friction_level);
         let share = self.friction_share(state.relative_rate, acting.end_rate, quiet_rate, brake);
         let friction = acting.friction_level.times(share);
-        let change = quiet_change + friction;
+        // From torque to torque, so that the changes add up to the torque to the last bit.
+        let torque = acting.other + friction;
+        let change = (torque - state.torque).stirred();
         let sensed_rate = quiet_rate + brake.times(share);
         let gyro_angle = self.free.advance(&mut state.free, &heads, change);
         let gimbal_angle = state.offset + (angle + self.free.gimbal_angle_gain * change);
-        state.torque = acting.other + friction;
+        state.torque = torque;
         if gyro_angle.beyond(self.stop_limit) {
             *faults |= self.meet_stop(state, gimbal_angle, sensed_rate, gyro_angle);
             return Moved::told(state);
