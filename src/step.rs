@@ -64,7 +64,7 @@ impl<N: Number> Law<N> {
         } else {
             self.act(state, &mut faults)
         };
-        let moved = if state.regime == Regime::Free || self.resume(state) {
+        let moved = if state.regime == Regime::Free || Self::resume(state) {
             self.move_free(state, &acting, &mut faults)
         } else {
             faults |= self.move_held(state, acting.taken_apart());

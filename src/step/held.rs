@@ -13,7 +13,7 @@ impl<N: Number> Law<N> {
     /// Whether the gyro is off its stops although the last period has not begun so.
     #[cold]
     #[inline(never)]
-    pub(super) fn resume(&self, state: &mut State<N>) -> bool {
+    pub(super) fn resume(state: &mut State<N>) -> bool {
         let released = state.regime == Regime::Released;
         if released {
             state.regime = Regime::Free;
