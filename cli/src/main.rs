@@ -3,7 +3,7 @@
 //! Exit status: 0 done, 1 it ran and the answer is "fails", 2 the input or the call is wrong, 3 the environment
 //! failed, 130 interrupted. Without a subcommand it runs the main job, `run`.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod blind;
 mod convert;
@@ -14,6 +14,7 @@ mod figures;
 mod gap;
 mod hil;
 mod interrupt;
+mod model;
 mod plot;
 mod progress;
 mod report;
@@ -50,6 +51,8 @@ enum Command {
     Gap(gap::Args),
     /// Flies a flight computer in the loop with the simulated platform.
     Hil(hil::Args),
+    /// Prints a model file with every parameter, to start from.
+    Model(model::Args),
     /// Runs a log through the model; without one, the paper's two 20 g cases.
     Run(run::Args),
     /// Runs parameters over ranges and tolerances.
@@ -70,6 +73,7 @@ fn main() -> ExitCode {
         Some(Command::Figures(args)) => figures::figures(args),
         Some(Command::Gap(args)) => gap::gap(args),
         Some(Command::Hil(args)) => hil::hil(args),
+        Some(Command::Model(args)) => model::model(args),
         Some(Command::Run(args)) => run::run(args),
         Some(Command::Sweep(args)) => sweep::sweep(args),
         None => run::run_default(&cli.run),

@@ -4,10 +4,12 @@
 //! a bit of the result. Finished runs are appended in order to a file beside the result that takes its name at the end.
 
 mod answer;
+mod lanes;
 pub(crate) mod margin;
 pub(crate) mod parameter;
 mod picture;
 mod plan;
+mod processor;
 mod record;
 pub(crate) mod trial;
 
@@ -22,12 +24,10 @@ use rayon::prelude::*;
 use crate::exit::Failure;
 use crate::{interrupt, report};
 use answer::Answer;
-use plan::{Plan, Range};
+use lanes::LANES;
+use plan::{Plan, Range, Run};
 use record::Record;
 use trial::Case;
-
-/// Runs between two looks at Ctrl-C, and between two writes.
-const BLOCK: u64 = 32;
 
 /// At how many g does the platform saturate, and which part's tolerance decides that.
 #[derive(Debug, Parser)]
@@ -91,11 +91,13 @@ pub(crate) fn sweep(args: &Args) -> Result<(), Failure> {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0)).build();
     let pool = pool.map_err(|error| Failure::Environment(error.into()))?;
+    let threads = pool.current_num_threads() as u64;
     let bar = bar(plan.runs(), answer.runs());
     while answer.runs() < plan.runs() {
         interrupt::check()?;
-        let runs = answer.runs()..(answer.runs() + BLOCK).min(plan.runs());
-        let rows: Vec<String> = pool.install(|| runs.into_par_iter().map(|run| plan.run(run).csv()).collect());
+        let rows: Vec<Vec<String>> =
+            pool.install(|| (0..threads).into_par_iter().map(|part| rows(&plan, answer.runs(), part)).collect());
+        let rows = rows.concat();
         if let Some(record) = &mut record {
             record.append(&rows)?;
         }
@@ -113,6 +115,13 @@ pub(crate) fn sweep(args: &Args) -> Result<(), Failure> {
         let _ = write!(text, "\nwritten: {}", record.commit()?.display());
     }
     report::print(&text, args.json.then(|| answer.json(&plan)).as_ref())
+}
+
+/// Rows of the runs of one thread, some of those behind `done`.
+fn rows(plan: &Plan, done: u64, part: u64) -> Vec<String> {
+    let from = (done + part * LANES as u64).min(plan.runs());
+    let to = (from + LANES as u64).min(plan.runs());
+    plan.run(from..to).iter().map(Run::csv).collect()
 }
 
 fn bar(runs: u64, done: u64) -> ProgressBar {

@@ -45,7 +45,7 @@ impl AtomicFile {
             // As any new file: the umask takes away what it takes away.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
-        let beside = builder.tempfile_in(folder)?;
+        let beside = builder.tempfile_in(folder).map_err(|error| io::Error::from(error.kind()))?; // without a name that nobody gave
         Ok(Self { target, output: Output::Beside(BufWriter::with_capacity(1 << 16, beside)) })
     }
 

@@ -141,7 +141,10 @@ pub(crate) fn nearest_hint<'a>(wanted: &str, there: impl Iterator<Item = &'a str
         Some(name) if distance(name) >= NEAR => format!("the nearest header is `{}`", clip(name.as_bytes())),
         Some(_) => {
             let names: Vec<String> = there.iter().take(12).map(|name| clip(name.as_bytes())).collect();
-            format!("none is near it in {}", names.join(", "))
+            format!(
+                "none is near it in {}; if another program wrote the file, make a log of it with `gimbal convert`",
+                names.join(", ")
+            )
         }
     }
 }

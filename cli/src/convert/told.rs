@@ -49,8 +49,11 @@ impl Told<'_> {
             text += "\naccelerations turned from the vehicle's axes into the stable member's";
         }
         if !resampled.dropped.is_empty() {
-            let _ =
-                write!(text, "\nleft out, because text has no value between rows: {}", resampled.dropped.join(", "));
+            let _ = write!(
+                text,
+                "\nleft out, because not every cell in them is a number: {}",
+                resampled.dropped.join(", ")
+            );
         }
         let _ = write!(text, "\n{}: {} rows at {} Hz", args.out.display(), resampled.log.len(), self.rate_hz());
         text

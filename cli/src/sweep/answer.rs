@@ -89,7 +89,7 @@ impl Spread {
 impl Answer {
     /// No run yet.
     pub(super) fn new(plan: &Plan) -> Self {
-        let nominal = plan.metrics(&plan.config).unwrap_or([None; 6]);
+        let nominal = plan.metrics(&[plan.config]).into_iter().next().flatten().unwrap_or([None; 6]);
         let references: Vec<f64> = plan.parameters().into_iter().map(|parameter| parameter.get(&plan.config)).collect();
         Self {
             spreads: nominal.map(Spread::new).to_vec(),

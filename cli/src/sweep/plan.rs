@@ -3,14 +3,15 @@
 use std::fmt::Write;
 
 use gimbal_model_file::{ModelFile, Tolerance};
-use gimbal_servo::{BuildError, Config, Digest};
+use gimbal_servo::{Config, Digest};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::Args;
+use super::lanes;
 use super::margin::margin;
 use super::parameter::{PARAMETERS, Parameter};
-use super::trial::{self, Case};
+use super::trial::Case;
 use crate::exit::Failure;
 
 /// Grid points where a range does not say.
@@ -192,28 +193,40 @@ impl Plan {
         random
     }
 
-    /// Does run k.
-    pub(super) fn run(&self, run: u64) -> Run {
-        let values = self.values(run);
-        let mut config = self.config;
-        for (parameter, value) in self.parameters().into_iter().zip(&values) {
-            parameter.set(&mut config, *value);
-        }
-        Run { number: run, values, metrics: self.metrics(&config).ok() }
+    /// Does runs, at most [`lanes::LANES`] of them.
+    pub(super) fn run(&self, runs: std::ops::Range<u64>) -> Vec<Run> {
+        let parameters = self.parameters();
+        let values: Vec<Vec<f64>> = runs.clone().map(|run| self.values(run)).collect();
+        let configs: Vec<Config> = values.iter().map(|values| self.with(&parameters, values)).collect();
+        let metrics = self.metrics(&configs);
+        let numbered = runs.zip(values).zip(metrics);
+        numbered.map(|((number, values), metrics)| Run { number, values, metrics }).collect()
     }
 
-    /// Saturation limit, peaks, velocity error, phase margin, and whether the gyro met its stop at the plan's acceleration.
-    pub(super) fn metrics(&self, config: &Config) -> Result<[Option<f64>; 6], BuildError> {
-        let outcome = trial::run(config, self.case, self.accel_g)?;
-        let limit_g = trial::saturation_g(config, self.case)?;
-        Ok([
-            limit_g,
-            Some(outcome.peak_gimbal_angle_rad),
-            Some(outcome.peak_gyro_angle_rad),
-            Some(outcome.velocity_error_mps),
-            margin(config).map(|margin| margin.phase_deg),
-            Some(if outcome.limited { 1.0 } else { 0.0 }),
-        ])
+    fn with(&self, parameters: &[&Parameter], values: &[f64]) -> Config {
+        let mut config = self.config;
+        for (parameter, value) in parameters.iter().zip(values) {
+            parameter.set(&mut config, *value);
+        }
+        config
+    }
+
+    /// Saturation limit, peaks, velocity error, phase margin, and whether the gyro met its stop at the plan's acceleration;
+    /// nothing where no law can be built.
+    pub(super) fn metrics(&self, configs: &[Config]) -> Vec<Option<[Option<f64>; 6]>> {
+        let found = lanes::run(configs, self.case, self.accel_g);
+        let told = configs.iter().zip(found).map(|(config, found)| {
+            let (outcome, limit_g) = found.ok()?;
+            Some([
+                limit_g,
+                Some(outcome.peak_gimbal_angle_rad),
+                Some(outcome.peak_gyro_angle_rad),
+                Some(outcome.velocity_error_mps),
+                margin(config).map(|margin| margin.phase_deg),
+                Some(if outcome.limited { 1.0 } else { 0.0 }),
+            ])
+        });
+        told.collect()
     }
 }
 

@@ -18,7 +18,7 @@ pub(crate) enum Case {
 }
 
 /// The acceleration of the profiles [g].
-const PROFILE_G: f64 = 20.0;
+pub(super) const PROFILE_G: f64 = 20.0;
 
 /// What a run comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
