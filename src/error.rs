@@ -43,6 +43,8 @@ pub enum BuildError {
     },
     /// The poles of the closed loop could not be located.
     PolesNotFound,
+    /// Two gimbals of a platform turn about the same axis.
+    SameAxis,
 }
 
 impl fmt::Display for BuildError {
@@ -64,6 +66,7 @@ impl fmt::Display for BuildError {
                 "two pole pairs of the closed loop coincide at {real_radps:.4} {imag_radps:+.4}j rad/s; \
                  change a time constant by a part in a thousand"
             ),
+            Self::SameAxis => write!(f, "two gimbals turn about the same axis; each needs one of x, y, z of its own"),
             Self::PolesNotFound => write!(
                 f,
                 "the closed loop's poles could not be located; the time constants differ by too many powers of ten"

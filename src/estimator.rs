@@ -39,7 +39,7 @@ mod servo;
 mod signals;
 mod state;
 mod step;
-mod sums;
+pub(crate) mod sums;
 
 pub use config::{Config, Sensors, Tolerance};
 pub use flags::Flags;

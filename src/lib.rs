@@ -51,6 +51,7 @@ mod number;
 pub mod paper;
 #[doc(hidden)]
 pub mod parts;
+pub mod platform;
 mod row;
 mod saved;
 pub mod servo;

@@ -258,7 +258,9 @@ fn velocity_error_mps(config: &Config, rows: &[Row], angles_rad: &[f64]) -> [f64
 fn draw(path: &Path, log: &Log, truth: &Truth, estimated: &Estimated) -> Result<(), Failure> {
     let times = log.column(Column::Time).unwrap_or_default();
     let [mut phi, mut low, mut high, mut error, mut two, mut minus, mut stop] = [(); 7].map(|()| Envelope::new());
-    for ((time_s, point), angle) in times.iter().zip(&estimated.points).zip(&truth.angles_rad) {
+    // The bound of the first rows, of which nothing is known before, would hide all others.
+    let from = if times.len() > 1_000 { 100 } else { 0 };
+    for ((time_s, point), angle) in times.iter().zip(&estimated.points).zip(&truth.angles_rad).skip(from) {
         phi.push(*time_s, *angle);
         low.push(*time_s, point.angle_rad - 2.0 * point.bound_rad);
         high.push(*time_s, point.angle_rad + 2.0 * point.bound_rad);

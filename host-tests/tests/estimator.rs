@@ -6,7 +6,7 @@ use host_tests::Row;
 use host_tests::axis::System;
 use host_tests::estimate::{Flight, Noise, estimate};
 use host_tests::estimate_faults::faults;
-use host_tests::estimate_figures::{Saturations, cases, free_score, saturations, wrong_score};
+use host_tests::estimate_figures::{self, Saturations, cases, free_score, saturations, wrong_score};
 use host_tests::inputs;
 
 /// The static ratio leaves 2 to 4 %.
@@ -97,4 +97,21 @@ fn closed_form_a_wrong_field_is_named() {
     config.sensors.gyro_noise_rad = f64::NAN;
     let error = config.build::<f32>(&Config::consistent()).unwrap_err();
     assert!(matches!(error, BuildError::OutOfRange { field: "sensors.gyro_noise_rad", .. }));
+}
+
+/// Readings that are two periods old: the filter's own prediction makes up for it.
+#[test]
+fn cross_a_delay_of_the_readings_is_made_good() {
+    let case = &cases(1)[1];
+    let (late, mut known) = (2, estimate_figures::exact());
+    let flight = case.flight(&known);
+    let mut delayed = flight.clone();
+    for k in (late..delayed.readings.len()).rev() {
+        delayed.readings[k].gyro_angle_rad = flight.readings[k - late].gyro_angle_rad;
+        delayed.readings[k].motor_torque_nm = flight.readings[k - late].motor_torque_nm;
+    }
+    let untold = case.score_of(&known, &delayed).attitude;
+    known.sensors.delay_s = 2e-3;
+    let told = case.score_of(&known, &delayed).attitude;
+    assert!(told < 0.02 && told < 0.7 * untold, "{told} told of the delay, {untold} untold");
 }

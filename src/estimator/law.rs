@@ -46,7 +46,7 @@ pub struct Law<N: Number> {
     /// Innovations that are plain noise.
     pub(super) usual: N,
     pub(super) widest: N,
-    pub(super) root_sum: RootSum<N>,
+    pub(crate) root_sum: RootSum<N>,
     pub(super) torque: ScaledRow<N, 1>,
     pub(super) sums: sums::Law<N>,
     pub(super) quick_gain: [N::Coef; STATES],

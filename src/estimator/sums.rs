@@ -90,9 +90,10 @@ impl<N: Number> Law<N> {
         })
     }
 
-    /// r.
+    /// r, with what the last count left over; fixed point keeps that among the bits of s.
     fn rate(&self, state: &State<N>, i: usize) -> f64 {
-        libm::ldexp(state.counted_velocity[i] as f64, self.count) + N::head(state.velocity[i]).to_f64(self.full)
+        let left = if N::HAS_SCALES { 0.0 } else { state.carry[0][i].to_f64(0) };
+        libm::ldexp(state.counted_velocity[i] as f64 + left, self.count) + N::head(state.velocity[i]).to_f64(self.full)
     }
 }
 
