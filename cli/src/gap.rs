@@ -4,12 +4,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use gimbal_gap::axis::{self, AxisLog};
 use gimbal_gap::report as told;
 use gimbal_log::{AtomicFile, Log, Needs};
-use gimbal_model_file::ModelFile;
+use gimbal_model_file::{AxisModel, ModelFile};
 use serde_json::Value;
 
 use crate::exit::Failure;
+use crate::interrupt;
 use crate::report;
 
 /// Diagnoses the gap between a model and logs.
@@ -24,6 +26,9 @@ pub(crate) struct Args {
     /// Folder for gap.json and gap.html; with several logs, a folder in it for each
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Log that is not fitted: what the diagnosis of each LOG leaves of it is told (plain axes alone)
+    #[arg(long, value_name = "LOG")]
+    unseen: Vec<PathBuf>,
     /// Print the report as JSON; with several logs, a list
     #[arg(long)]
     json: bool,
@@ -31,6 +36,14 @@ pub(crate) struct Args {
 
 /// Diagnoses what the command line says.
 pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
+    if let Some(path) = &args.model
+        && let Some(model) = AxisModel::open(path).map_err(|error| Failure::Input(error.into()))?
+    {
+        return bare_axis(args, &model, &path.display().to_string());
+    }
+    if !args.unseen.is_empty() {
+        return Err(Failure::input("--unseen: needs the model of a plain axis, a file with the table [axis]"));
+    }
     let model = match &args.model {
         None => ModelFile::default(),
         Some(path) => ModelFile::open(path).map_err(|error| Failure::Input(error.into()))?,
@@ -51,6 +64,32 @@ pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
             write(&folder.join("gap.html"), &told::html(&diagnosis, &name))?;
         }
         let text = told::text(&diagnosis);
+        texts.push(if args.logs.len() == 1 { text } else { format!("{name}\n{text}") });
+        reports.push(json);
+    }
+    let json = if reports.len() == 1 { reports.remove(0) } else { Value::Array(reports) };
+    report::print(&texts.join("\n\n"), args.json.then_some(&json))
+}
+
+/// Diagnoses a plain axis, one without a gyro.
+fn bare_axis(args: &Args, model: &AxisModel, model_name: &str) -> Result<(), Failure> {
+    let open = |path: &PathBuf| AxisLog::open(path, model).map_err(|error| Failure::Input(error.into()));
+    let mut texts = Vec::new();
+    let mut reports: Vec<Value> = Vec::new();
+    for path in &args.logs {
+        interrupt::check()?;
+        let unseen = args.unseen.iter().map(|path| Ok((path.display().to_string(), open(path)?)));
+        let diagnosis = axis::diagnose(open(path)?, model, unseen.collect::<Result<_, Failure>>()?);
+        let name = path.display().to_string();
+        let json = axis::json(&diagnosis, &name, model_name);
+        if let Some(out) = &args.out {
+            let folder =
+                if args.logs.len() == 1 { out.clone() } else { out.join(path.file_stem().unwrap_or_default()) };
+            std::fs::create_dir_all(&folder).map_err(Failure::write(&folder))?;
+            write(&folder.join("gap.json"), &format!("{json:#}\n"))?;
+            write(&folder.join("gap.html"), &axis::html(&diagnosis, &name))?;
+        }
+        let text = axis::text(&diagnosis);
         texts.push(if args.logs.len() == 1 { text } else { format!("{name}\n{text}") });
         reports.push(json);
     }

@@ -6,6 +6,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod axis;
 pub mod diagnose;
 pub mod fit;
 pub mod judge;

@@ -19,6 +19,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod axis;
 mod error;
 mod fields;
 mod merge;
@@ -27,6 +28,7 @@ mod read;
 mod tolerance;
 mod write;
 
+pub use axis::AxisModel;
 pub use error::{ModelFileError, Problem};
 pub use read::{ModelFile, Preset};
 pub use tolerance::Tolerance;

@@ -6,7 +6,7 @@ use super::picture::{Line, plot, thinned};
 use crate::diagnose::Diagnosis;
 use crate::fit::{predicted, raw_residual};
 
-const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
+pub(crate) const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.4em}h2{font-size:1.1em;margin-top:1.6em}table{border-collapse:collapse}td,th{padding:2px 12px 2px 0;text-align:left;\
 border-bottom:1px solid #ddd}svg{width:100%;height:auto}svg text{font-size:11px;fill:#555}.grid{stroke:#eee}.line{fill:none;\
 stroke-width:1}.span{fill:#f5b04155}.legend{font-size:.85em;margin:.2em 0}figure{margin:1em 0}figcaption{font-weight:600}\
@@ -109,6 +109,6 @@ fn tables(out: &mut String, diagnosis: &Diagnosis) {
     table("What would have been seen", "<th>effect</th><th>smallest size</th>", sizes.collect());
 }
 
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

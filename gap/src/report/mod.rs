@@ -8,3 +8,9 @@ mod text;
 pub use html::html;
 pub use json::json;
 pub use text::text;
+
+/// Parts of a page, for reports of other kinds.
+pub(crate) mod page {
+    pub(crate) use super::html::{STYLE, escaped};
+    pub(crate) use super::picture::{Line, plot};
+}

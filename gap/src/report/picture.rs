@@ -9,14 +9,14 @@ const LEFT: f64 = 78.0;
 const BOTTOM: f64 = 26.0;
 
 /// One line.
-pub(super) struct Line<'a> {
-    pub(super) name: &'a str,
-    pub(super) colour: &'a str,
-    pub(super) points: Vec<(f64, f64)>,
+pub(crate) struct Line<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) colour: &'a str,
+    pub(crate) points: Vec<(f64, f64)>,
 }
 
 /// Lines over a common x; `logarithmic` on both axes.
-pub(super) fn plot(title: &str, x_name: &str, lines: &[Line], marks: &[(f64, f64)], logarithmic: bool) -> String {
+pub(crate) fn plot(title: &str, x_name: &str, lines: &[Line], marks: &[(f64, f64)], logarithmic: bool) -> String {
     let map = |value: f64| if logarithmic { value.max(1e-300).log10() } else { value };
     let all = || lines.iter().flat_map(|line| &line.points).filter(|point| point.0.is_finite() && point.1.is_finite());
     let range = |of: &dyn Fn(&(f64, f64)) -> f64| {

@@ -1,0 +1,294 @@
+//! The balance of an axis: what the effort is, over what the nominal model needs, and every effect that could fill it.
+
+use gimbal_model_file::AxisModel;
+
+use super::library::{NOMINAL, Shape, rms, shapes};
+use super::motion::Motion;
+use super::regress::Grams;
+use super::search::{Candidate, Problem, Set};
+
+/// Numbers of waves that are kept from the search, for each kind of ripple.
+const KEPT_WAVES: usize = 12;
+/// A column must keep this share of its power beside the nominal parameters, and this much through the band.
+const LEAST_KEPT: f64 = 1e-4;
+const LEAST_PASSED: f64 = 0.02;
+
+/// One log's balance.
+#[derive(Debug)]
+pub(super) struct Balance {
+    pub(super) motion: Motion,
+    /// Effort less nominal model, on the grid.
+    pub(super) target: Vec<f64>,
+    /// Effort on the grid.
+    pub(super) effort: Vec<f64>,
+    pub(super) columns: Vec<Vec<f64>>,
+    pub(super) problem: Problem,
+    /// Effects that this motion cannot show.
+    pub(super) hidden: Vec<&'static str>,
+}
+
+/// Nominal parameters.
+pub(super) fn nominal(model: &AxisModel) -> [f64; 3] {
+    [model.inertia, model.viscous, model.coulomb]
+}
+
+/// Effort that parameters and a constant need, at every row.
+pub(super) fn needed(motion: &Motion, parameters: [f64; 4]) -> Vec<f64> {
+    let [inertia, viscous, coulomb, constant] = parameters;
+    (0..motion.q.len())
+        .map(|i| inertia * motion.a[i] + viscous * motion.v[i] + coulomb * motion.s[i] + constant)
+        .collect()
+}
+
+/// The parameters of a motion by plain least squares, with a constant: a first look, and what effects of the effort
+/// hang on.
+pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
+    let mut columns: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
+    columns.push(vec![1.0; motion.rows.len()]);
+    let effort = motion.raw(&motion.effort);
+    let grams = Grams::new(&columns, &effort, &motion.block);
+    let fit = grams.fit(&[0, 1, 2, 3]);
+    let rest = (grams.square_of_fit(&[0, 1, 2, 3]) / effort.len().max(1) as f64).sqrt();
+    ([fit[0], fit[1], fit[2], fit[3]], rest)
+}
+
+impl Balance {
+    /// Makes the balance and every column.
+    pub(super) fn new(mut motion: Motion, model: &AxisModel) -> Self {
+        let (found, rest) = plain(&motion);
+        motion.needed = needed(&motion, if motion.stands { [0.0, 0.0, model.coulomb, 0.0] } else { found });
+        let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
+        let effort = motion.raw(&motion.effort);
+        let parameters = nominal(model);
+        let target: Vec<f64> = (0..effort.len())
+            .map(|row| effort[row] - (0..3).map(|place| parameters[place] * base[place][row]).sum::<f64>())
+            .collect();
+        let mut columns = base.clone();
+        let mut candidates: Vec<Candidate> = Vec::new();
+        let mut hidden: Vec<&'static str> = Vec::new();
+        let mut tried = shapes(&motion);
+        tried.extend(waves(&motion, &target, &base));
+        tried.retain(|shape| !model.known_good.iter().any(|good| good == shape.effect()));
+        let made: Vec<(Shape, Vec<Vec<f64>>)> = {
+            use rayon::prelude::*;
+            tried
+                .into_par_iter()
+                .map(|shape| {
+                    let grid = shape.on_grid(&motion);
+                    (shape, grid)
+                })
+                .collect()
+        };
+        for (shape, grid) in made {
+            let whole = shape.columns(&motion).iter().map(|column| rms(&motion.pick(column))).fold(0.0, f64::max);
+            let through = grid.iter().map(|column| rms(column)).fold(0.0, f64::max);
+            if !(through > LEAST_PASSED * whole && through > 0.0) {
+                hidden.push(shape.effect());
+                continue;
+            }
+            let start = columns.len();
+            columns.extend(grid);
+            candidates.push(Candidate { shape, columns: (start..columns.len()).collect() });
+        }
+        let mut grams = Grams::new(&columns, &target, &motion.block);
+        candidates.retain(|candidate| {
+            let released = NOMINAL.contains(&candidate.shape);
+            let beside: Vec<usize> = (0..3).collect();
+            let kept = candidate.columns.iter().map(|&column| grams.keeps(column, &beside)).fold(0.0, f64::max);
+            let shows = released || kept > LEAST_KEPT;
+            if !shows {
+                hidden.push(candidate.shape.effect());
+            }
+            shows
+        });
+        hidden.sort_unstable();
+        hidden.dedup();
+        hidden.retain(|effect| !candidates.iter().any(|candidate| candidate.shape.effect() == *effect));
+        set_priors(&mut grams, model, rest, &motion, 0);
+        let floor_square = motion.floor.powi(2) * target.len() as f64;
+        let effort_square = effort.iter().map(|u| u * u).sum();
+        let coulomb = model.coulomb;
+        let problem = Problem { base: vec![0, 1, 2], candidates, grams, floor_square, effort_square, coulomb };
+        Self { motion, target, effort, columns, problem, hidden }
+    }
+
+    /// Searches, takes the priors from what is then left, refines the shapes, and searches again.
+    pub(super) fn search(&mut self, model: &AxisModel) -> Set {
+        let mut best = self.problem.search(Vec::new());
+        for _ in 0..2 {
+            let residual = self.residual(&best.members);
+            let rest = rms(&residual);
+            let lag = correlation(&residual);
+            set_priors(&mut self.problem.grams, model, rest, &self.motion, lag);
+            self.refine(&best.members, model);
+            best = self.problem.search(best.members);
+        }
+        best
+    }
+
+    /// Amplitudes of a set's columns.
+    pub(super) fn fit(&self, members: &[usize]) -> (Vec<usize>, Vec<f64>) {
+        let columns = self.problem.columns(members);
+        let amplitudes = self.problem.grams.fit(&columns);
+        (columns, amplitudes)
+    }
+
+    /// Shift of each nominal parameter by amplitudes of a set's columns.
+    pub(super) fn shifts(&self, members: &[usize], columns: &[usize], amplitudes: &[f64]) -> [f64; 3] {
+        let mut shifts = [amplitudes[0], amplitudes[1], amplitudes[2]];
+        for &member in members {
+            let candidate = &self.problem.candidates[member];
+            if let Some(index) = NOMINAL.iter().position(|nominal| *nominal == candidate.shape) {
+                let own = columns.iter().position(|column| *column == candidate.columns[0]);
+                shifts[index] += own.map_or(0.0, |place| amplitudes[place]);
+            }
+        }
+        shifts
+    }
+
+    /// What a set leaves, on the grid.
+    pub(super) fn residual(&self, members: &[usize]) -> Vec<f64> {
+        let (columns, amplitudes) = self.fit(members);
+        let mut residual = self.target.clone();
+        for (&column, amplitude) in columns.iter().zip(&amplitudes) {
+            residual.iter_mut().zip(&self.columns[column]).for_each(|(r, value)| *r -= amplitude * value);
+        }
+        residual
+    }
+
+    /// Moves the shape parameters of the members to where the fit is best, and adds those shapes to the library.
+    fn refine(&mut self, members: &[usize], model: &AxisModel) {
+        let mut added = false;
+        for &member in members {
+            let shape = self.problem.candidates[member].shape.clone();
+            let Some(&(name, value)) = shape.numbers().first() else { continue };
+            if name == "wave_number" && self.motion.rotary {
+                continue;
+            }
+            let others: Vec<usize> = members.iter().copied().filter(|other| *other != member).collect();
+            let rest: Vec<usize> = self.problem.columns(&others);
+            let span =
+                if name == "wave_number" { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
+            let cost = |number: f64| {
+                let grid = shape.with(number).on_grid(&self.motion);
+                let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
+                columns.extend(grid);
+                let mut grams = Grams::new(&columns, &self.target, &self.motion.block);
+                for (place, &column) in rest.iter().enumerate() {
+                    grams.precision[place] = self.problem.grams.precision[column];
+                }
+                grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
+            };
+            let best = golden(value / span, value * span, cost);
+            let shape = shape.with(best);
+            let start = self.columns.len();
+            self.columns.extend(shape.on_grid(&self.motion));
+            self.problem.candidates.push(Candidate { shape, columns: (start..self.columns.len()).collect() });
+            added = true;
+        }
+        if added {
+            let precision = self.problem.grams.precision.clone();
+            self.problem.grams = Grams::new(&self.columns, &self.target, &self.motion.block);
+            self.problem.grams.precision[..precision.len()].copy_from_slice(&precision);
+            let _ = model;
+        }
+    }
+}
+
+/// Smallest value of a function of a logarithm, by golden section.
+fn golden(from: f64, to: f64, cost: impl Fn(f64) -> f64) -> f64 {
+    let ratio = 0.618_034;
+    let (mut low, mut high) = (from.ln(), to.ln());
+    let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
+    let (mut at_a, mut at_b) = (cost(a.exp()), cost(b.exp()));
+    for _ in 0..7 {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - ratio * (high - low);
+            at_a = cost(a.exp());
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + ratio * (high - low);
+            at_b = cost(b.exp());
+        }
+    }
+    if at_a < at_b { a.exp() } else { b.exp() }
+}
+
+/// Rows over which a residual is correlated.
+pub(super) fn correlation(residual: &[f64]) -> usize {
+    let mean = residual.iter().sum::<f64>() / residual.len().max(1) as f64;
+    let power: f64 = residual.iter().map(|r| (r - mean).powi(2)).sum();
+    (1..200.min(residual.len() / 4).max(2))
+        .find(|&lag| {
+            let product: f64 = residual.iter().zip(&residual[lag..]).map(|(a, b)| (a - mean) * (b - mean)).sum();
+            product < 0.2 * power
+        })
+        .unwrap_or(200)
+}
+
+/// Priors of the nominal parameters: their tolerance, against the noise as correlated as it is.
+fn set_priors(grams: &mut Grams, model: &AxisModel, rest: f64, motion: &Motion, lag: usize) {
+    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
+    let variance = rest.max(motion.floor).powi(2) * (1 + 2 * lag) as f64;
+    for (place, parameter) in nominal(model).iter().enumerate() {
+        let deviation = tolerance[place] * parameter;
+        let known = 1e9 * grams.power(place).max(1e-300);
+        grams.precision[place] = if deviation > 0.0 { (variance / (deviation * deviation)).min(known) } else { known };
+    }
+}
+
+/// Ripples whose number of waves stands out in what the parameters leave.
+fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<Shape> {
+    let mut all = base.to_vec();
+    all.push(vec![1.0; target.len()]);
+    let grams = Grams::new(&all, target, &motion.block);
+    let fit = grams.fit(&[0, 1, 2, 3]);
+    let rest: Vec<f64> =
+        (0..target.len()).map(|row| target[row] - (0..4).map(|c| fit[c] * all[c][row]).sum::<f64>()).collect();
+    let (q, needed, s) = (motion.pick(&motion.q), motion.pick(&motion.needed), motion.pick(&motion.s));
+    let carriers: [(&dyn Fn(usize) -> f64, &dyn Fn(f64) -> Shape, f64); 3] = [
+        (&|_| 1.0, &|wave_number| Shape::Ripple { wave_number }, f64::MAX),
+        (&|i| needed[i], &|wave_number| Shape::MotorRipple { wave_number }, f64::MAX),
+        (&|i| s[i], &|wave_number| Shape::PositionFriction { wave_number }, 24.0),
+    ];
+    let numbers = motion.wave_numbers();
+    let mut shapes = Vec::new();
+    for (kind, (carrier, shape, most)) in carriers.iter().enumerate() {
+        if motion.stands && kind > 0 {
+            continue;
+        }
+        let mut found: Vec<(f64, f64)> = {
+            use rayon::prelude::*;
+            let carried: Vec<f64> = (0..q.len()).map(|i| carrier(i)).collect();
+            let power: f64 = carried.iter().map(|c| c * c).sum::<f64>().max(1e-300);
+            numbers
+                .par_iter()
+                .filter(|k| **k * if motion.rotary { 1.0 } else { motion.travel / std::f64::consts::TAU } <= *most)
+                .map(|&k| {
+                    let (mut re, mut im) = (0.0, 0.0);
+                    for i in 0..q.len() {
+                        let (sin, cos) = (k * q[i]).sin_cos();
+                        re += carried[i] * rest[i] * cos;
+                        im += carried[i] * rest[i] * sin;
+                    }
+                    ((re * re + im * im) / power, k)
+                })
+                .collect()
+        };
+        // peaks alone: neighbours of a line are its skirt
+        let peaks: Vec<(f64, f64)> = (0..found.len())
+            .filter(|&i| {
+                motion.rotary
+                    || (i == 0 || found[i - 1].0 <= found[i].0)
+                        && (i + 1 == found.len() || found[i + 1].0 <= found[i].0)
+            })
+            .map(|i| found[i])
+            .collect();
+        found = peaks;
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let kept = if kind == 0 { KEPT_WAVES } else { KEPT_WAVES / 2 };
+        shapes.extend(found.iter().take(kept).map(|(_, k)| shape(*k)));
+    }
+    shapes
+}

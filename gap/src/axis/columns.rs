@@ -1,0 +1,327 @@
+//! Whether the columns are what their names say: each is held against the others before anything is fitted.
+
+use std::f64::consts::{PI, TAU};
+
+use gimbal_model_file::AxisModel;
+
+use super::balance::{nominal, plain};
+use super::motion::{Motion, MotionFrom, step};
+use super::smooth::Kernel;
+use super::table::AxisLog;
+
+/// A column that is not what its name says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnFault {
+    /// Name of the effect.
+    pub effect: &'static str,
+    /// Its parameter, value and unit.
+    pub parameters: Vec<(&'static str, f64, f64, String)>,
+}
+
+/// What the columns say about each other.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Checked {
+    pub(super) from: Option<MotionFrom>,
+    pub(super) effort_sign: f64,
+    /// In words, one finding each.
+    pub(super) words: Vec<String>,
+    pub(super) faults: Vec<ColumnFault>,
+}
+
+/// Two columns agree within this.
+const SAME: f64 = 0.02;
+/// Correlation below which two columns have nothing to do with each other.
+const UNRELATED: f64 = 0.7;
+/// Rows to either side in which a shift is looked for.
+const SHIFT: i32 = 12;
+
+/// How one signal follows another: `b = slope * a`, `b` late by `late_rows`.
+struct Follows {
+    slope: f64,
+    correlation: f64,
+    late_rows: f64,
+}
+
+fn follows(a: &[f64], b: &[f64], valid: &[bool]) -> Follows {
+    let sums = |shift: i32| {
+        let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+        let span = SHIFT.unsigned_abs() as usize;
+        for k in (span..a.len().saturating_sub(span)).filter(|k| valid[*k]) {
+            let other = b[k.saturating_add_signed(shift as isize)];
+            ab += a[k] * other;
+            aa += a[k] * a[k];
+            bb += other * other;
+        }
+        (ab, aa.max(1e-300), bb.max(1e-300))
+    };
+    let of = |shift: i32| {
+        let (ab, aa, bb) = sums(shift);
+        ab / (aa * bb).sqrt()
+    };
+    let best = (-SHIFT..=SHIFT).max_by(|x, y| of(*x).abs().total_cmp(&of(*y).abs())).unwrap_or(0);
+    // vertex of the parabola through three shifts
+    let (low, middle, high) = (of(best - 1).abs(), of(best).abs(), of(best + 1).abs());
+    let curve = low - 2.0 * middle + high;
+    let vertex = if best.abs() < SHIFT && curve < 0.0 { 0.5 * (low - high) / curve } else { 0.0 };
+    let (ab, aa, _) = sums(best);
+    Follows { slope: ab / aa, correlation: of(best), late_rows: f64::from(best) + vertex.clamp(-0.5, 0.5) }
+}
+
+/// What a factor looks like.
+fn looks_like(factor: f64) -> String {
+    let size = factor.abs();
+    let known = [
+        (TAU, "2 pi: turns against radians"),
+        (1.0 / TAU, "1/(2 pi): radians against turns"),
+        (180.0 / PI, "180/pi: degrees against radians"),
+        (PI / 180.0, "pi/180: radians against degrees"),
+        (60.0 / TAU, "60/(2 pi): rpm against rad/s"),
+        (TAU / 60.0, "2 pi/60: rad/s against rpm"),
+        (1e3, "1000: a prefix"),
+        (1e-3, "1/1000: a prefix"),
+    ];
+    let sign = if factor < 0.0 { "the opposite sign, and " } else { "" };
+    if (size - 1.0).abs() < SAME {
+        return "the opposite sign".to_owned();
+    }
+    if let Some((_, name)) = known.iter().find(|(value, _)| (size / value - 1.0).abs() < SAME) {
+        return format!("{sign}{name}");
+    }
+    for (value, form) in [(size, ""), (1.0 / size, "1/")] {
+        let whole = value.round();
+        if (2.0..200.0).contains(&whole) && (value / whole - 1.0).abs() < 0.01 {
+            return format!("{sign}{form}{whole}: a ratio of gears, poles or periods");
+        }
+    }
+    format!("{sign}no known ratio")
+}
+
+/// Position of a rotary axis that wraps, unwrapped.
+pub(super) fn unwrap(log: &mut AxisLog) {
+    let Some(position) = &mut log.position else { return };
+    let jumps = position.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > PI).count();
+    let fastest = log.velocity.as_ref().map_or(0.0, |v| v.iter().fold(0.0_f64, |most, v| most.max(v.abs())));
+    if jumps == 0 || fastest * log.period_s > PI / 2.0 || jumps * 20 > position.len() {
+        return;
+    }
+    let mut turns = 0.0;
+    let mut last = position[0];
+    for value in position.iter_mut() {
+        let step = *value - last;
+        last = *value;
+        if step.abs() > PI {
+            turns -= step.signum();
+        }
+        *value += TAU * turns;
+    }
+    log.notes.push(format!("the position wraps {jumps} times and is unwrapped"));
+}
+
+/// Holds the columns against each other.
+pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
+    let mut checked = Checked { effort_sign: 1.0, ..Checked::default() };
+    let names = &model.columns;
+    let name = |source: &Option<gimbal_model_file::axis::Source>| {
+        source.as_ref().map_or_else(String::new, |source| format!("`{}`", source.name))
+    };
+    let (position_name, velocity_name) = (name(&names.position), name(&names.velocity));
+    let period_ms = 1e3 * log.period_s;
+    checked.words.push(format!(
+        "rows every {period_ms:.3} ms ({:.0} Hz) for {:.1} s",
+        1e3 / period_ms,
+        log.effort.len() as f64 * log.period_s
+    ));
+    let sigma = 3.0;
+    let mut from = if log.position.is_some() { MotionFrom::Position } else { MotionFrom::Velocity };
+    if let (Some(position), Some(velocity)) = (&log.position, &log.velocity) {
+        let rate = Kernel::new(sigma, 1, log.period_s).apply(position);
+        let logged = Kernel::new(sigma, 0, log.period_s).apply(velocity);
+        let both = follows(&rate, &logged, &log.valid);
+        let unit = format!("{}/s", model.motion.unit());
+        checked.words.push(format!(
+            "{velocity_name} is {:.4} times the derivative of {position_name} (correlation {:.4}, {:.2} ms late), \
+             in steps of {:.3e} {unit}",
+            both.slope,
+            both.correlation,
+            both.late_rows * period_ms,
+            step(velocity)
+        ));
+        if both.correlation.abs() < UNRELATED {
+            let moving = super::library::rms(&rate);
+            if moving > 2.0 * step(velocity) {
+                checked.words.push(format!("{velocity_name} and {position_name} do not belong together"));
+                checked.faults.push(ColumnFault {
+                    effect: "velocity_unrelated",
+                    parameters: vec![("correlation", both.correlation, 0.0, "1".to_owned())],
+                });
+            } else {
+                checked.words.push(format!("{velocity_name} is below its own steps: the axis hardly moves"));
+            }
+        } else {
+            if (both.slope - 1.0).abs() > SAME {
+                from = scale(log, model, both.slope, &mut checked, (&position_name, &velocity_name));
+            } else {
+                from = finer(log, model);
+            }
+            if both.late_rows.abs() * period_ms > 0.3 * period_ms.max(0.5) {
+                checked.words.push(format!(
+                    "{velocity_name} is {:.1} ms late: a filter or an older sample",
+                    both.late_rows * period_ms
+                ));
+            }
+        }
+        let used = if from == MotionFrom::Position { &position_name } else { &velocity_name };
+        checked.words.push(format!("the balance takes its motion from {used}"));
+    }
+    checked.from = Some(from);
+    sign(log, model, &mut checked);
+    others(log, model, &mut checked);
+    checked
+}
+
+/// The column with less noise in the acceleration.
+fn finer(log: &AxisLog, model: &AxisModel) -> MotionFrom {
+    let floor = |from| Motion::new(log, model, from, 1.0).floor;
+    let widest = |from| Motion::new(log, model, from, 1.0).band_hz;
+    let (p, v) = (MotionFrom::Position, MotionFrom::Velocity);
+    match widest(p).total_cmp(&widest(v)) {
+        std::cmp::Ordering::Greater => p,
+        std::cmp::Ordering::Less => v,
+        std::cmp::Ordering::Equal if floor(p) <= 1.5 * floor(v) => p,
+        std::cmp::Ordering::Equal => v,
+    }
+}
+
+/// Position and velocity differ by a factor: the nominal parameters tell which of them is right.
+fn scale(
+    log: &AxisLog,
+    model: &AxisModel,
+    slope: f64,
+    checked: &mut Checked,
+    (position_name, velocity_name): (&str, &str),
+) -> MotionFrom {
+    let distance = |from| {
+        let (found, _) = plain(&Motion::new(log, model, from, 1.0));
+        let away = |place: usize| {
+            let ratio = found[place].abs() / nominal(model)[place].max(1e-300);
+            if nominal(model)[place] > 0.0 { ratio.max(1e-6).ln().abs().min(6.0) } else { 0.0 }
+        };
+        away(0) + away(1)
+    };
+    let (by_position, by_velocity) = (distance(MotionFrom::Position), distance(MotionFrom::Velocity));
+    let looks = looks_like(slope);
+    let (right, wrong, effect, value) = if by_velocity < by_position {
+        (MotionFrom::Velocity, position_name, "position_scale", 1.0 / slope)
+    } else {
+        (MotionFrom::Position, velocity_name, "velocity_scale", slope)
+    };
+    checked.words.push(format!(
+        "{velocity_name} and {position_name} differ by {slope:.4} ({looks}); inertia and viscous friction are nearer to \
+         the model's with {}: {wrong} is {value:.4} of what it should be (or the time column, if both are right)",
+        if right == MotionFrom::Velocity { velocity_name } else { position_name },
+    ));
+    checked
+        .faults
+        .push(ColumnFault { effect, parameters: vec![("factor", value, 0.01 * value.abs(), "1".to_owned())] });
+    right
+}
+
+/// A positive effort must accelerate towards positive positions.
+fn sign(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
+    let Some(from) = checked.from else { return };
+    let motion = Motion::new(log, model, from, 1.0);
+    if motion.stands {
+        checked.words.push(format!(
+            "the axis stands {:.0} % of the time: the balance is one of rest, without inertia or viscous friction",
+            100.0 * motion.at_rest
+        ));
+        return;
+    }
+    let (found, _) = plain(&motion);
+    let drag = found[1] * super::library::rms(&motion.v) + found[2];
+    let name = &model.columns.effort.name;
+    if found[0] < 0.0 && drag < 0.0 {
+        checked.effort_sign = -1.0;
+        checked.words.push(format!(
+            "`{name}` has the opposite sign: it decelerates where it should accelerate, and friction would drive; turned round"
+        ));
+        checked
+            .faults
+            .push(ColumnFault { effect: "torque_sign", parameters: vec![("factor", -1.0, 0.0, "1".to_owned())] });
+    } else if found[0] < 0.0 {
+        checked.words.push(format!(
+            "`{name}` does not go with the acceleration (inertia by plain regression {:.3e}); friction alone shows its sign",
+            found[0]
+        ));
+    } else {
+        checked.words.push(format!("`{name}` has the sign of the acceleration"));
+    }
+    checked.words.push(format!(
+        "plain regression: inertia {:.4e}, viscous {:.4e}, Coulomb {:.4e}, constant {:.3e} (model: {:.4e}, {:.4e}, {:.4e}, 0)",
+        found[0], found[1], found[2], found[3], model.inertia, model.viscous, model.coulomb
+    ));
+}
+
+/// Command, limits, stuck channels, references.
+fn others(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
+    let names = &model.columns;
+    let effort_name = &names.effort.name;
+    if let (Some(command), Some(source)) = (&log.command, &names.command) {
+        let both = follows(command, &log.effort, &log.valid);
+        checked.words.push(format!(
+            "`{effort_name}` is {:.5} times `{}` (correlation {:.5}, {:.2} ms late)",
+            both.slope,
+            source.name,
+            both.correlation,
+            both.late_rows * 1e3 * log.period_s
+        ));
+        if both.correlation > 0.999_99 {
+            checked.words.push(format!(
+                "`{effort_name}` is the command times a constant, not a measurement: the drive is not seen"
+            ));
+        }
+    }
+    let most = log.effort.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+    let limit = model.effort_limit.unwrap_or(most).min(most);
+    let at_limit = log.effort.windows(2).filter(|p| p[0].abs() >= 0.999 * limit && p[1].abs() >= 0.999 * limit).count();
+    if at_limit as f64 > 2e-3 * log.effort.len() as f64 {
+        checked.words.push(format!(
+            "`{effort_name}` stays at {limit:.4} {} for {:.1} % of the rows: a limit",
+            model.effort_unit,
+            100.0 * at_limit as f64 / log.effort.len() as f64
+        ));
+    }
+    let motion = [(&log.position, &names.position), (&log.velocity, &names.velocity)];
+    let effort = Some(log.effort.clone());
+    let source = Some(names.effort.clone());
+    for (values, source) in motion.into_iter().chain([(&effort, &source)]) {
+        let (Some(values), Some(source)) = (values, source) else { continue };
+        let mut longest = 0;
+        let mut run = 0;
+        for pair in values.windows(2) {
+            run = if pair[0] == pair[1] { run + 1 } else { 0 };
+            longest = longest.max(run);
+        }
+        let length_s = longest as f64 * log.period_s;
+        if length_s > 0.2 {
+            checked.words.push(format!("`{}` does not change for {length_s:.2} s: at rest, or stuck", source.name));
+        }
+    }
+    let rate = match (&log.velocity, &log.position) {
+        (Some(velocity), _) => Some(velocity.clone()),
+        (None, Some(position)) => Some(Kernel::new(3.0, 1, log.period_s).apply(position)),
+        _ => None,
+    };
+    for (reference, measured, source) in [
+        (&log.position_reference, &log.position, &names.position_reference),
+        (&log.velocity_reference, &rate, &names.velocity_reference),
+    ] {
+        if let (Some(reference), Some(measured), Some(source)) = (reference, measured, source) {
+            let both = follows(reference, measured, &log.valid);
+            checked.words.push(format!(
+                "the axis follows `{}` with a gain of {:.4} (correlation {:.3})",
+                source.name, both.slope, both.correlation
+            ));
+        }
+    }
+}

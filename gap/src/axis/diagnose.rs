@@ -1,0 +1,300 @@
+//! The whole way from the log of an axis to a diagnosis.
+
+use gimbal_model_file::AxisModel;
+
+use super::balance::Balance;
+use super::columns::{self, ColumnFault};
+use super::judge::{Found, Parameter, Ranked, Shrunk, by_block, judge, shrunk};
+use super::library::rms;
+use super::motion::{Motion, MotionFrom};
+use super::place::{AxisRegime, FrictionCurve, bands, friction_curve, regimes, spans, spectrum};
+use super::search::Set;
+use super::table::AxisLog;
+use crate::judge::Verdict;
+use crate::place::{Band, Span, Spectrum};
+
+/// Lines over time for the page: time, effort, nominal model, with effects; and the residuals.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lines {
+    pub(super) time_s: Vec<f64>,
+    pub(super) effort: Vec<f64>,
+    pub(super) nominal: Vec<f64>,
+    pub(super) fitted: Vec<f64>,
+}
+
+/// Everything that a report says about the log of an axis.
+#[derive(Debug)]
+pub struct AxisDiagnosis {
+    /// Rows, period and time of the first row.
+    pub rows: usize,
+    /// [s].
+    pub period_s: f64,
+    /// [s].
+    pub first_s: f64,
+    /// Upper edge of the band of the balance [Hz].
+    pub band_hz: f64,
+    /// Unit of the effort.
+    pub effort_unit: String,
+    /// Unit of the position.
+    pub position_unit: &'static str,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Effects, columns that are not what they say among them.
+    pub found: Vec<Found>,
+    /// Sets by probability.
+    pub ranking: Vec<Ranked>,
+    /// Sets that this log cannot tell from the one named.
+    pub alternatives: Vec<Ranked>,
+    /// That no effect of the library is it.
+    pub unknown_probability: f64,
+    /// Shares of the blocks.
+    pub blocks: Vec<(String, f64)>,
+    /// Shares of the regimes.
+    pub regimes: Vec<AxisRegime>,
+    /// Shares of the bands.
+    pub bands: Vec<Band>,
+    /// When.
+    pub spans: Vec<Span>,
+    /// Before and after: this log on blocks held out, then logs that were not fitted.
+    pub shrunk: Vec<Shrunk>,
+    /// Smallest amplitudes that would have been seen: effect, amplitude if any.
+    pub detectable: Vec<(String, Option<f64>)>,
+    /// What the columns say about each other.
+    pub columns: Vec<String>,
+    /// Remarks.
+    pub notes: Vec<String>,
+    /// Friction over rate.
+    pub curve: FrictionCurve,
+    pub(super) lines: Lines,
+    pub(super) spectra: [Spectrum; 2],
+}
+
+/// A log made ready: columns checked, the motion chosen.
+fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Motion) {
+    columns::unwrap(&mut log);
+    let checked = columns::check(&log, model);
+    let from = checked.from.unwrap_or(MotionFrom::Position);
+    let motion = Motion::new(&log, model, from, checked.effort_sign);
+    (log, checked, motion)
+}
+
+/// Diagnoses a log against a model, and scores what it finds on logs that it does not fit.
+#[must_use]
+pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>) -> AxisDiagnosis {
+    let (log, checked, motion) = ready(log, model);
+    let mut notes = log.notes.clone();
+    let mut balance = Balance::new(motion, model);
+    let best = balance.search(model);
+    let judged = judge(&balance, &best, model);
+    let motion = &balance.motion;
+    let after = balance.residual(&best.members);
+    let contribution: Vec<f64> = balance.target.iter().zip(&after).map(|(before, after)| before - after).collect();
+    let mut found = judged.found;
+    let mut verdict = judged.verdict;
+    for fault in &checked.faults {
+        found.insert(0, of_column(fault));
+    }
+    if !checked.faults.is_empty() && verdict == Verdict::NoGap {
+        verdict = Verdict::Explained;
+    }
+    let mut blocks: Vec<(String, f64)> = Vec::new();
+    let all: f64 = found.iter().map(|found| found.removes).sum::<f64>().max(1e-300);
+    for found in &found {
+        match blocks.iter_mut().find(|(name, _)| name == found.block) {
+            Some((_, share)) => *share += found.removes / all,
+            None => blocks.push((found.block.to_owned(), found.removes / all)),
+        }
+    }
+    blocks.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let gap = verdict != Verdict::NoGap;
+    let mut shrunk = vec![judged.shrunk];
+    for (name, log) in unseen {
+        shrunk.extend(score(&balance, &best, model, name, log, &mut notes));
+    }
+    notes.extend(remarks(&found, model, &balance));
+    let lines = Lines {
+        time_s: motion.rows.iter().map(|&row| log.first_s + motion.time_s(row)).collect(),
+        effort: balance.effort.clone(),
+        nominal: balance.effort.iter().zip(&balance.target).map(|(u, r)| u - r).collect(),
+        fitted: balance.effort.iter().zip(&after).map(|(u, r)| u - r).collect(),
+    };
+    AxisDiagnosis {
+        rows: log.rows,
+        period_s: log.period_s,
+        first_s: log.first_s,
+        band_hz: motion.band_hz,
+        effort_unit: model.effort_unit.clone(),
+        position_unit: model.motion.unit(),
+        verdict,
+        found,
+        ranking: judged.ranking,
+        alternatives: judged.alternatives,
+        unknown_probability: judged.unknown_probability,
+        blocks,
+        regimes: if gap { regimes(motion, &balance.target, &after) } else { Vec::new() },
+        bands: if gap { bands(motion, &balance.target) } else { Vec::new() },
+        spans: if gap && !best.members.is_empty() { spans(motion, &contribution, rms(&after)) } else { Vec::new() },
+        shrunk,
+        detectable: detectable(&balance, &best, &after),
+        columns: checked.words,
+        notes,
+        curve: friction_curve(&balance, &best, &judged.drawn, model),
+        lines,
+        spectra: [spectrum(motion, &balance.target), spectrum(motion, &after)],
+    }
+}
+
+fn of_column(fault: &ColumnFault) -> Found {
+    let parameters = fault
+        .parameters
+        .iter()
+        .map(|(name, value, std, unit)| Parameter {
+            name: (*name).to_owned(),
+            value: *value,
+            std: *std,
+            unit: unit.clone(),
+        })
+        .collect();
+    Found { effect: fault.effect.to_owned(), block: "measurement", probability: 0.98, parameters, removes: 0.0 }
+}
+
+/// What the fit to one log leaves of another.
+fn score(
+    balance: &Balance,
+    best: &Set,
+    model: &AxisModel,
+    name: String,
+    log: AxisLog,
+    notes: &mut Vec<String>,
+) -> Vec<Shrunk> {
+    let (_, checked, mut motion) = ready(log, model);
+    if Some(balance.motion.from) != checked.from {
+        notes.push(format!("{name}: its motion is taken from the other column"));
+    }
+    if motion.stands != balance.motion.stands {
+        notes.push(format!("{name}: one of the logs is at rest and the other moves; not compared"));
+        return Vec::new();
+    }
+    motion.needed = super::balance::needed(&motion, super::balance::plain(&balance.motion).0);
+    let base: Vec<Vec<f64>> = super::library::NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
+    let parameters = super::balance::nominal(model);
+    let effort = motion.raw(&motion.effort);
+    let before: Vec<f64> =
+        (0..effort.len()).map(|row| effort[row] - (0..3).map(|p| parameters[p] * base[p][row]).sum::<f64>()).collect();
+    let (_, amplitudes) = balance.fit(&best.members);
+    let mut after = before.clone();
+    let mut place = 0;
+    let mut take = |columns: &[Vec<f64>], after: &mut Vec<f64>| {
+        for column in columns {
+            after.iter_mut().zip(column).for_each(|(r, value)| *r -= amplitudes[place] * value);
+            place += 1;
+        }
+    };
+    take(&base, &mut after);
+    for &member in &best.members {
+        let candidate = &balance.problem.candidates[member];
+        let channel = match candidate.shape {
+            super::library::Shape::Load { channel }
+            | super::library::Shape::LoadFriction { channel }
+            | super::library::Shape::LoadGain { channel } => Some(&balance.motion.auxiliary[channel].0),
+            _ => None,
+        };
+        let there = channel.is_none_or(|name| motion.auxiliary.iter().any(|(other, _)| other == name));
+        let columns = if there {
+            candidate.shape.on_grid(&motion)
+        } else {
+            vec![vec![0.0; after.len()]; candidate.columns.len()]
+        };
+        take(&columns, &mut after);
+    }
+    let mut counts = vec![0.0; super::motion::BLOCKS];
+    motion.block.iter().for_each(|&block| counts[block] += 1.0);
+    let unit = &model.effort_unit;
+    let whole = shrunk(
+        format!("effort of {name}, not fitted"),
+        unit,
+        &by_block(&before, &motion),
+        &by_block(&after, &motion),
+        &counts,
+        motion.floor,
+    );
+    let mut all = vec![whole];
+    // a load that the fitted log did not have is not the fit's to explain
+    for (channel, values) in &motion.auxiliary {
+        if balance.motion.auxiliary.iter().any(|(other, _)| other == channel) {
+            continue;
+        }
+        let off = |residual: &[f64]| -> Vec<f64> {
+            let rows = motion.rows.iter().zip(residual);
+            rows.map(|(&row, r)| if values[row].abs() < 1e-9 { *r } else { 0.0 }).collect()
+        };
+        let mut counts = vec![0.0; super::motion::BLOCKS];
+        for (&row, &block) in motion.rows.iter().zip(&motion.block) {
+            counts[block] += if values[row].abs() < 1e-9 { 1.0 } else { 0.0 };
+        }
+        all.push(shrunk(
+            format!("effort of {name}, not fitted, {channel} off"),
+            unit,
+            &by_block(&off(&before), &motion),
+            &by_block(&off(&after), &motion),
+            &counts,
+            motion.floor,
+        ));
+    }
+    all
+}
+
+/// What these signals cannot tell apart, whatever their size, and what would.
+fn remarks(found: &[Found], model: &AxisModel, balance: &Balance) -> Vec<String> {
+    let named = |effect: &str| found.iter().any(|found| found.effect == effect);
+    let good = |effect: &str| model.known_good.iter().any(|good| good == effect);
+    let mut notes = Vec::new();
+    if named("constant_torque") && !good("torque_bias") {
+        notes.push(
+            "constant_torque may as well be torque_bias, an offset of the effort's sensor or drive, or gravity; told apart \
+             by a run with the axis turned round, or by the effort logged with the drive off"
+                .to_owned(),
+        );
+    }
+    if named("torque_scale") {
+        notes.push(
+            "torque_scale is a common factor of inertia and friction: the force constant, or all of them; told apart by a \
+             known mass added to the axis"
+                .to_owned(),
+        );
+    }
+    if named("motor_lag") {
+        notes.push("motor_lag may as well be loop_delay or time_skew of this size; told apart by a probe near the lag's corner".to_owned());
+    }
+    if named("inertia") && !named("torque_scale") && named("viscous_friction") {
+        notes.push(
+            "inertia and viscous friction shift together: a wrong scale of position or time would do the same"
+                .to_owned(),
+        );
+    }
+    if !balance.hidden.is_empty() {
+        notes.push(format!("this log cannot show: {}", balance.hidden.join(", ")));
+    }
+    notes
+}
+
+/// Smallest amplitude of each kind that would have been seen.
+fn detectable(balance: &Balance, best: &Set, after: &[f64]) -> Vec<(String, Option<f64>)> {
+    let problem = &balance.problem;
+    let beside = problem.columns(&best.members);
+    let lag = 1 + 2 * super::balance::correlation(after);
+    let variance = rms(after).powi(2).max(balance.motion.floor.powi(2)) * lag as f64;
+    let mut sizes: Vec<(String, Option<f64>)> = Vec::new();
+    for candidate in &problem.candidates {
+        let column = candidate.columns[0];
+        let kept = problem.grams.keeps(column, &beside) * problem.grams.power(column);
+        let size = (kept > 0.0).then(|| 5.0 * (variance / kept).sqrt());
+        let effect = super::judge::label(&candidate.shape, &balance.motion);
+        match sizes.iter_mut().find(|(name, _)| *name == effect) {
+            Some((_, old)) => *old = old.zip(size).map(|(a, b)| a.min(b)).or(size),
+            None => sizes.push((effect, size)),
+        }
+    }
+    sizes.extend(balance.hidden.iter().map(|effect| ((*effect).to_owned(), None)));
+    sizes
+}

@@ -1,0 +1,328 @@
+//! The effects of an axis: each is a shape that its motion alone draws, times amplitudes that the balance finds.
+//!
+//! ```text
+//! effort = J a + B v + F s + sum amplitude * shape(q, v, a, t, needed, load)
+//! ```
+//!
+//! Nothing here is a function of the logged effort: what hangs on the effort (`dead_zone`, `torque_curve`, lag, delay)
+//! hangs on the effort that the motion needs, so that no column can be the regressand in disguise.
+
+use super::motion::Motion;
+
+/// What an effect looks like; numbers are its shape parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Shape {
+    Inertia,
+    Viscous,
+    Coulomb,
+    Scale,
+    Constant,
+    Asymmetry,
+    Stribeck { rate: f64, exponent: f64 },
+    Presliding { displacement: f64 },
+    Quadratic,
+    ViscousCurve { exponent: f64 },
+    FrictionDrift { time_s: f64 },
+    ViscousDrift { time_s: f64 },
+    BiasDrift { time_s: f64 },
+    LoadDependence,
+    PositionFriction { wave_number: f64 },
+    FrictionTaper,
+    Spring,
+    Hysteresis { width: f64 },
+    Ripple { wave_number: f64 },
+    MotorRipple { wave_number: f64 },
+    DeadZone,
+    TorqueCurve,
+    Lag,
+    Flexible,
+    Backlash { width: f64 },
+    Load { channel: usize },
+    LoadFriction { channel: usize },
+    LoadGain { channel: usize },
+}
+
+/// Parameters of the nominal model.
+pub(super) const NOMINAL: [Shape; 3] = [Shape::Inertia, Shape::Viscous, Shape::Coulomb];
+
+impl Shape {
+    /// Name of the effect.
+    pub(super) fn effect(&self) -> &'static str {
+        match self {
+            Self::Inertia => "inertia",
+            Self::Viscous => "viscous_friction",
+            Self::Coulomb => "friction_level",
+            Self::Scale => "torque_scale",
+            Self::Constant => "constant_torque",
+            Self::Asymmetry => "direction_asymmetry",
+            Self::Stribeck { .. } => "stribeck",
+            Self::Presliding { .. } => "presliding",
+            Self::Quadratic => "quadratic_drag",
+            Self::ViscousCurve { .. } => "viscous_curve",
+            Self::FrictionDrift { .. } => "friction_drift",
+            Self::ViscousDrift { .. } => "viscous_drift",
+            Self::BiasDrift { .. } => "bias_drift",
+            Self::LoadDependence => "load_dependence",
+            Self::PositionFriction { .. } => "position_friction",
+            Self::FrictionTaper => "friction_taper",
+            Self::Spring => "cable_spring",
+            Self::Hysteresis { .. } => "cable_hysteresis",
+            Self::Ripple { .. } => "torque_ripple",
+            Self::MotorRipple { .. } => "motor_ripple",
+            Self::DeadZone => "dead_zone",
+            Self::TorqueCurve => "torque_curve",
+            Self::Lag => "motor_lag",
+            Self::Flexible => "flexible_mode",
+            Self::Backlash { .. } => "backlash",
+            Self::Load { .. } => "external_load",
+            Self::LoadFriction { .. } => "load_friction",
+            Self::LoadGain { .. } => "load_gain",
+        }
+    }
+
+    /// Its block.
+    pub(super) fn block(&self) -> &'static str {
+        match self {
+            Self::Viscous
+            | Self::Coulomb
+            | Self::Asymmetry
+            | Self::Stribeck { .. }
+            | Self::Presliding { .. }
+            | Self::Quadratic
+            | Self::ViscousCurve { .. }
+            | Self::FrictionDrift { .. }
+            | Self::ViscousDrift { .. }
+            | Self::LoadDependence
+            | Self::PositionFriction { .. }
+            | Self::FrictionTaper
+            | Self::LoadFriction { .. } => "friction",
+            Self::Constant | Self::Spring | Self::Hysteresis { .. } | Self::Ripple { .. } | Self::Load { .. } => {
+                "disturbance"
+            }
+            Self::MotorRipple { .. } | Self::DeadZone | Self::TorqueCurve | Self::Lag | Self::LoadGain { .. } => {
+                "servo"
+            }
+            Self::Inertia | Self::Flexible | Self::Backlash { .. } => "structure",
+            Self::Scale | Self::BiasDrift { .. } => "measurement",
+        }
+    }
+
+    /// Whether several of it, each with another number, may act at once.
+    pub(super) fn many(&self) -> bool {
+        matches!(
+            self,
+            Self::Ripple { .. }
+                | Self::MotorRipple { .. }
+                | Self::PositionFriction { .. }
+                | Self::Load { .. }
+                | Self::LoadFriction { .. }
+                | Self::LoadGain { .. }
+        )
+    }
+
+    /// Whether amplitudes are possible: friction brakes, springs pull back, lags are late. `level` is the friction.
+    pub(super) fn possible(&self, amplitudes: &[f64], level: f64) -> bool {
+        match self {
+            Self::Stribeck { .. }
+            | Self::Quadratic
+            | Self::LoadDependence
+            | Self::Spring
+            | Self::Hysteresis { .. }
+            | Self::DeadZone
+            | Self::Lag
+            | Self::Flexible => amplitudes[0] > 0.0,
+            Self::Presliding { .. } => amplitudes[0] > 0.0 && amplitudes[0] < 1.5 * level.abs(),
+            Self::Backlash { .. } => amplitudes[0] < 0.0 && amplitudes[1] < 0.0,
+            _ => true,
+        }
+    }
+
+    /// Its shape parameters: name and value.
+    pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
+        match *self {
+            Self::Stribeck { rate, exponent } => vec![("rate", rate), ("exponent", exponent)],
+            Self::Presliding { displacement } => vec![("displacement", displacement)],
+            Self::ViscousCurve { exponent } => vec![("exponent", exponent)],
+            Self::FrictionDrift { time_s } | Self::ViscousDrift { time_s } | Self::BiasDrift { time_s } => {
+                vec![("time_constant", time_s)]
+            }
+            Self::PositionFriction { wave_number }
+            | Self::Ripple { wave_number }
+            | Self::MotorRipple { wave_number } => vec![("wave_number", wave_number)],
+            Self::Hysteresis { width } | Self::Backlash { width } => vec![("width", width)],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The same shape with its first number changed.
+    pub(super) fn with(&self, number: f64) -> Self {
+        let mut other = self.clone();
+        match &mut other {
+            Self::Stribeck { rate: place, .. }
+            | Self::Presliding { displacement: place }
+            | Self::ViscousCurve { exponent: place }
+            | Self::FrictionDrift { time_s: place }
+            | Self::ViscousDrift { time_s: place }
+            | Self::BiasDrift { time_s: place }
+            | Self::PositionFriction { wave_number: place }
+            | Self::Ripple { wave_number: place }
+            | Self::MotorRipple { wave_number: place }
+            | Self::Hysteresis { width: place }
+            | Self::Backlash { width: place } => *place = number,
+            _ => {}
+        }
+        other
+    }
+
+    /// The shapes of the effect at every row, one for each amplitude.
+    pub(super) fn columns(&self, m: &Motion) -> Vec<Vec<f64>> {
+        let by = |f: &dyn Fn(usize) -> f64| (0..m.q.len()).map(f).collect::<Vec<f64>>();
+        let waves = |k: f64, carrier: &dyn Fn(usize) -> f64| {
+            vec![by(&|i| carrier(i) * (k * m.q[i]).cos()), by(&|i| carrier(i) * (k * m.q[i]).sin())]
+        };
+        let warm = |time_s: f64, i: usize| 1.0 - (-m.time_s(i) / time_s).exp();
+        let size = rms(&m.needed).max(1e-30);
+        let middle = m.q.iter().sum::<f64>() / m.q.len() as f64;
+        match *self {
+            Self::Inertia => vec![m.a.clone()],
+            Self::Viscous => vec![m.v.clone()],
+            Self::Coulomb => vec![m.s.clone()],
+            Self::Scale => vec![m.needed.clone()],
+            Self::Constant => vec![vec![1.0; m.q.len()]],
+            Self::Asymmetry => vec![by(&|i| m.s[i].abs())],
+            Self::Stribeck { rate, exponent } => {
+                vec![by(&|i| m.s[i] * (-(m.v[i].abs() / rate).powf(exponent)).exp())]
+            }
+            Self::Presliding { displacement } => {
+                let z = dahl_state(&m.q, displacement);
+                vec![by(&|i| z[i] - m.s[i])]
+            }
+            Self::Quadratic => vec![by(&|i| m.v[i] * m.v[i].abs())],
+            Self::ViscousCurve { exponent } => vec![by(&|i| m.s[i] * m.v[i].abs().powf(exponent))],
+            Self::FrictionDrift { time_s } => vec![by(&|i| m.s[i] * warm(time_s, i))],
+            Self::ViscousDrift { time_s } => vec![by(&|i| m.v[i] * warm(time_s, i))],
+            Self::BiasDrift { time_s } => vec![by(&|i| warm(time_s, i))],
+            Self::LoadDependence => vec![by(&|i| m.s[i] * m.needed[i].abs())],
+            Self::PositionFriction { wave_number } => waves(wave_number, &|i| m.s[i]),
+            Self::FrictionTaper => vec![by(&|i| m.s[i] * (m.q[i] - middle))],
+            Self::Spring => vec![by(&|i| m.q[i] - middle)],
+            Self::Hysteresis { width } => vec![play_state(&m.q, width)],
+            Self::Ripple { wave_number } => waves(wave_number, &|_| 1.0),
+            Self::MotorRipple { wave_number } => waves(wave_number, &|i| m.needed[i]),
+            Self::DeadZone => vec![by(&|i| (m.needed[i] / (0.02 * size)).clamp(-1.0, 1.0))],
+            Self::TorqueCurve => vec![by(&|i| (m.needed[i] / size).powi(3))],
+            Self::Lag => vec![m.derivative(&m.whole.apply(&m.needed))],
+            Self::Flexible => vec![m.derivative(&m.derivative(&m.rest.apply(&m.a)))],
+            Self::Backlash { width } => {
+                let p = play_state(&m.q, width);
+                vec![by(&|i| (1.0 - p[i].abs()) * m.a[i]), by(&|i| (1.0 - p[i].abs()) * m.s[i])]
+            }
+            Self::Load { channel } => vec![m.auxiliary[channel].1.clone()],
+            Self::LoadFriction { channel } => vec![by(&|i| m.s[i] * m.auxiliary[channel].1[i])],
+            Self::LoadGain { channel } => vec![by(&|i| m.needed[i] * m.auxiliary[channel].1[i])],
+        }
+    }
+
+    /// The shapes on the grid of the balance.
+    pub(super) fn on_grid(&self, m: &Motion) -> Vec<Vec<f64>> {
+        let smoothed = matches!(self, Self::Inertia | Self::Viscous);
+        self.columns(m).iter().map(|column| if smoothed { m.smoothed(column) } else { m.raw(column) }).collect()
+    }
+}
+
+/// Root mean square.
+pub(super) fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// Dahl's state over its limit: dz = (1 - z sgn(dq))/displacement dq, exact between rows.
+pub(super) fn dahl_state(q: &[f64], displacement: f64) -> Vec<f64> {
+    let mut z = 0.0_f64;
+    let mut last = q[0];
+    q.iter()
+        .map(|&now| {
+            let step = now - last;
+            last = now;
+            let towards = step.signum();
+            if step != 0.0 {
+                z = towards - (towards - z) * (-step.abs() / displacement).exp();
+            }
+            z
+        })
+        .collect()
+}
+
+/// Play over half its width: the state follows the position, clamped to +-1.
+pub(super) fn play_state(q: &[f64], width: f64) -> Vec<f64> {
+    let mut state = 0.0_f64;
+    let mut last = q[0];
+    q.iter()
+        .map(|&now| {
+            state = (state + 2.0 * (now - last) / width).clamp(-1.0, 1.0);
+            last = now;
+            state
+        })
+        .collect()
+}
+
+/// Everything that is tried without a number of waves.
+pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
+    let mut shapes = vec![
+        Shape::Inertia,
+        Shape::Viscous,
+        Shape::Coulomb,
+        Shape::Constant,
+        Shape::Asymmetry,
+        Shape::Quadratic,
+        Shape::LoadDependence,
+        Shape::FrictionTaper,
+        Shape::Spring,
+        Shape::DeadZone,
+        Shape::TorqueCurve,
+        Shape::Lag,
+        Shape::Flexible,
+    ];
+    for share in [0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32] {
+        let rate = share * m.fastest;
+        if rate > m.quiet {
+            shapes.extend([1.0, 2.0].map(|exponent| Shape::Stribeck { rate, exponent }));
+        }
+    }
+    for exponent in [0.3, 0.5, 0.667] {
+        shapes.push(Shape::ViscousCurve { exponent });
+    }
+    for share in [3e-4, 1e-3, 3e-3, 1e-2, 3e-2] {
+        let length = share * m.travel;
+        if length > 4.0 * m.position_noise {
+            shapes.push(Shape::Presliding { displacement: length });
+            shapes.push(Shape::Backlash { width: length });
+        }
+    }
+    for share in [0.03, 0.1, 0.3, 1.0] {
+        shapes.push(Shape::Hysteresis { width: share * m.travel });
+    }
+    for share in [0.05, 0.15, 0.4, 1.0] {
+        let time_s = share * m.length_s();
+        shapes.extend([Shape::FrictionDrift { time_s }, Shape::ViscousDrift { time_s }, Shape::BiasDrift { time_s }]);
+    }
+    for channel in 0..m.auxiliary.len() {
+        shapes.extend([Shape::Load { channel }, Shape::LoadFriction { channel }, Shape::LoadGain { channel }]);
+    }
+    if m.stands {
+        // without slip nothing that hangs on rate or acceleration can be told
+        shapes.retain(|shape| {
+            matches!(
+                shape,
+                Shape::Coulomb
+                    | Shape::Constant
+                    | Shape::Spring
+                    | Shape::Hysteresis { .. }
+                    | Shape::BiasDrift { .. }
+                    | Shape::Presliding { .. }
+                    | Shape::FrictionTaper
+                    | Shape::Load { .. }
+            )
+        });
+    }
+    shapes
+}

@@ -1,0 +1,24 @@
+//! A plain servo axis without a gyro: the same questions, asked of effort and motion.
+//!
+//! The method, its library and its limits: `docs/axis.md`.
+
+mod balance;
+mod columns;
+mod diagnose;
+mod judge;
+mod library;
+mod motion;
+mod place;
+mod regress;
+mod report;
+mod search;
+mod smooth;
+mod table;
+
+pub use columns::ColumnFault;
+pub use diagnose::{AxisDiagnosis, diagnose};
+pub use judge::{Found, Parameter, Ranked, Shrunk};
+pub use motion::MotionFrom;
+pub use place::{AxisRegime, FrictionCurve};
+pub use report::{html, json, text};
+pub use table::{AxisLog, AxisLogError};

@@ -1,0 +1,269 @@
+//! The motion of an axis as its log shows it: position, rate, acceleration, zero-phase and band-limited, and the rows
+//! at which the balance is made.
+
+use std::f64::consts::TAU;
+
+use gimbal_model_file::AxisModel;
+use gimbal_model_file::axis::Motion as Kind;
+
+use super::smooth::{HALF_POWER, Kernel};
+use super::table::AxisLog;
+
+/// Shares of the sampling rate that the band may end at, the widest first.
+const BANDS: [f64; 6] = [0.1, 0.0667, 0.04, 0.025, 0.0167, 0.01];
+/// Noise that the acceleration may bring into the balance, as a share of the effort.
+const NOISE_SHARE: f64 = 0.01;
+/// Blocks of time: what is held out, and what the bootstrap draws.
+pub(super) const BLOCKS: usize = 32;
+/// An axis is at rest when it stays slow this long [s].
+const DWELL_S: f64 = 0.06;
+/// Rows of the balance at most.
+const MOST_ROWS: usize = 12_000;
+/// Below this share of moving rows the axis is taken to stand.
+const STANDS: f64 = 0.1;
+
+/// Where position and rate come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MotionFrom {
+    /// The position column, differentiated.
+    Position,
+    /// The velocity column; its integral is the position.
+    Velocity,
+}
+
+/// Motion at every row, and the grid of the balance.
+#[derive(Debug, Clone)]
+pub(super) struct Motion {
+    pub(super) from: MotionFrom,
+    pub(super) period_s: f64,
+    pub(super) band_hz: f64,
+    pub(super) rotary: bool,
+    /// Position, rate, acceleration: smoothed with g.
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) a: Vec<f64>,
+    /// Direction: rate over the quiet rate, clamped; of a standing axis the direction of its last motion.
+    pub(super) s: Vec<f64>,
+    /// Effort; held efforts moved to the middle of what they act over.
+    pub(super) effort: Vec<f64>,
+    /// Effort that the parameters alone need: for effects that hang on the effort.
+    pub(super) needed: Vec<f64>,
+    pub(super) auxiliary: Vec<(String, Vec<f64>)>,
+    /// Further smoothing of what is already smoothed, and both together.
+    pub(super) rest: Kernel,
+    pub(super) whole: Kernel,
+    /// Rows of the balance and the block of each.
+    pub(super) rows: Vec<usize>,
+    pub(super) block: Vec<usize>,
+    /// Rows of the log from one row of the grid to the next.
+    pub(super) thin: usize,
+    /// Rate below which the direction is not known.
+    pub(super) quiet: f64,
+    /// Largest rate, and the span of positions.
+    pub(super) fastest: f64,
+    pub(super) travel: f64,
+    /// Noise of one position [m or rad], or of one rate.
+    pub(super) position_noise: f64,
+    /// Noise that motion and effort bring into the balance.
+    pub(super) floor: f64,
+    /// Share of the rows at rest; whether the axis stands all the time.
+    pub(super) at_rest: f64,
+    pub(super) stands: bool,
+}
+
+/// Noise of a sampled signal that is smooth between rows: third differences, the largest tenth left out.
+pub(super) fn noise(values: &[f64]) -> f64 {
+    let mut squares: Vec<f64> = values.windows(4).map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).powi(2)).collect();
+    if squares.is_empty() {
+        return 0.0;
+    }
+    squares.sort_by(f64::total_cmp);
+    let kept = squares.len() * 9 / 10 + 1;
+    // a Gaussian without its largest tenth keeps 44 % of its power per sample
+    let trimmed = squares.iter().take(kept).sum::<f64>() / kept.min(squares.len()) as f64;
+    (trimmed / 20.0 / 0.62).sqrt().max(step(values) / 12_f64.sqrt())
+}
+
+/// Smallest step between values: the quantisation, where there is one.
+pub(super) fn step(values: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    let mut steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    // the tenth percentile is not misled by roundings in a file
+    steps.get(steps.len() / 10).copied().unwrap_or(0.0)
+}
+
+impl Motion {
+    #[allow(clippy::too_many_lines, reason = "one chain from the columns to the grid")]
+    pub(super) fn new(log: &AxisLog, model: &AxisModel, from: MotionFrom, effort_sign: f64) -> Self {
+        let period_s = log.period_s;
+        let rate_hz = 1.0 / period_s;
+        let position: Vec<f64> = match (from, &log.position, &log.velocity) {
+            (MotionFrom::Position, Some(position), _) => position.clone(),
+            (_, _, Some(velocity)) => {
+                let mut sum = 0.0;
+                let mut last = velocity[0];
+                velocity
+                    .iter()
+                    .map(|v| {
+                        sum += 0.5 * (v + last) * period_s;
+                        last = *v;
+                        sum
+                    })
+                    .collect()
+            }
+            _ => vec![0.0; log.effort.len()],
+        };
+        let mut effort: Vec<f64> = log.effort.iter().map(|value| value * effort_sign).collect();
+        let effort_noise = if model.effort_held { step(&effort) / 12_f64.sqrt() } else { noise(&effort) };
+        if model.effort_held {
+            effort = (0..effort.len()).map(|k| 0.5 * (effort[k] + effort[k.saturating_sub(1)])).collect();
+        }
+        let mean = effort.iter().sum::<f64>() / effort.len() as f64;
+        let spread = (effort.iter().map(|u| (u - mean).powi(2)).sum::<f64>() / effort.len() as f64).sqrt();
+        let position_noise = match (from, &log.velocity) {
+            (MotionFrom::Velocity, Some(velocity)) => noise(velocity),
+            _ => noise(&position),
+        };
+        // acceleration noise of a band: kernels of both smoothings in one
+        let noise_at = |band_hz: f64| {
+            let sigma = HALF_POWER / band_hz * rate_hz * 2.0_f64.sqrt();
+            let order = if from == MotionFrom::Velocity { 1 } else { 2 };
+            position_noise * Kernel::new(sigma, order, period_s).noise_gain()
+        };
+        let band_hz = model.band_hz.unwrap_or_else(|| {
+            let good = |share: &&f64| model.inertia * noise_at(**share * rate_hz) < NOISE_SHARE * spread;
+            BANDS.iter().find(good).unwrap_or(&BANDS[BANDS.len() - 1]) * rate_hz
+        });
+        let sigma = HALF_POWER / band_hz * rate_hz;
+        let rest = Kernel::new(sigma, 0, period_s);
+        let whole = Kernel::new(sigma * 2.0_f64.sqrt(), 0, period_s);
+        let (q, v, a) = match (from, &log.velocity) {
+            (MotionFrom::Velocity, Some(velocity)) => (
+                position,
+                Kernel::new(sigma, 0, period_s).apply(velocity),
+                Kernel::new(sigma, 1, period_s).apply(velocity),
+            ),
+            _ => {
+                let of = |order| Kernel::new(sigma, order, period_s).apply(&position);
+                (of(0), of(1), of(2))
+            }
+        };
+        let rate_noise = match from {
+            MotionFrom::Position => position_noise * Kernel::new(sigma, 1, period_s).noise_gain(),
+            MotionFrom::Velocity => position_noise * Kernel::new(sigma, 0, period_s).noise_gain(),
+        };
+        let fastest = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let (low, high) = q.iter().fold((f64::MAX, f64::MIN), |(low, high), q| (low.min(*q), high.max(*q)));
+        let quiet = (4.0 * rate_noise).max(1e-3 * fastest);
+        // runs of slow rows are rest
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of rows")]
+        let dwell = (DWELL_S / period_s).ceil() as usize;
+        // and so are the rows that smoothing reaches from there
+        let reach = whole.half();
+        let mut resting = vec![false; v.len()];
+        let mut start = 0;
+        for k in 0..=v.len() {
+            if k == v.len() || v[k].abs() > quiet {
+                if k - start >= dwell {
+                    resting[start.saturating_sub(reach)..(k + reach).min(v.len())].fill(true);
+                }
+                start = k + 1;
+            }
+        }
+        let at_rest = resting.iter().filter(|rest| **rest).count() as f64 / v.len() as f64;
+        let stands = 1.0 - at_rest < STANDS;
+        let s = if stands {
+            super::library::play_state(&q, (8.0 * position_noise).max(2e-3 * (high - low)))
+        } else {
+            v.iter().map(|v| (v / quiet).clamp(-1.0, 1.0)).collect()
+        };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small factor")]
+        let thin = ((rate_hz / (4.0 * band_hz)).floor() as usize).max(v.len() / MOST_ROWS).max(1);
+        let margin = whole.half() + 2;
+        let good = |row: &usize| {
+            (stands || !resting[*row])
+                && log.valid[row - margin.min(*row)..(row + margin).min(v.len())].iter().all(|valid| *valid)
+        };
+        let last = v.len().saturating_sub(margin);
+        let rows: Vec<usize> = (margin..last).step_by(thin).filter(good).collect();
+        let block = rows.iter().map(|row| row * BLOCKS / v.len()).collect();
+        let floor = (model.inertia * noise_at(band_hz)).hypot(effort_noise * whole.noise_gain());
+        Self {
+            from,
+            period_s,
+            band_hz,
+            rotary: model.motion == Kind::Rotary,
+            needed: vec![0.0; v.len()],
+            auxiliary: log.auxiliary.clone(),
+            q,
+            v,
+            a,
+            s,
+            effort,
+            rest,
+            whole,
+            rows,
+            block,
+            thin,
+            quiet,
+            fastest,
+            travel: high - low,
+            position_noise,
+            floor,
+            at_rest,
+            stands,
+        }
+    }
+
+    /// A smoothed signal on the grid of the balance.
+    pub(super) fn smoothed(&self, values: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&row| self.rest.at(values, row)).collect()
+    }
+
+    /// A signal, or a function of the motion, on the grid of the balance.
+    pub(super) fn raw(&self, values: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&row| self.whole.at(values, row)).collect()
+    }
+
+    /// Values at the rows of the grid as they are.
+    pub(super) fn pick(&self, values: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&row| values[row]).collect()
+    }
+
+    /// Time since the first row.
+    pub(super) fn time_s(&self, row: usize) -> f64 {
+        row as f64 * self.period_s
+    }
+
+    /// Length of the log.
+    pub(super) fn length_s(&self) -> f64 {
+        self.time_s(self.q.len())
+    }
+
+    /// Derivative with respect to time of a signal at every row.
+    pub(super) fn derivative(&self, values: &[f64]) -> Vec<f64> {
+        let last = values.len() - 1;
+        (0..values.len())
+            .map(|k| {
+                let (from, to) = (k.saturating_sub(1), (k + 1).min(last));
+                (values[to] - values[from]) / ((to - from) as f64 * self.period_s)
+            })
+            .collect()
+    }
+
+    /// Waves per unit of position that the travel can hold.
+    pub(super) fn wave_numbers(&self) -> Vec<f64> {
+        if self.travel <= 0.0 {
+            return Vec::new();
+        }
+        if self.rotary {
+            let least = (0.7 * TAU / self.travel).max(1.0).ceil();
+            (0..220).map(|k| least + f64::from(k)).filter(|k| *k <= 220.0).collect()
+        } else {
+            (3..400).map(|half| f64::from(half) * 0.5 * TAU / self.travel).collect()
+        }
+    }
+}

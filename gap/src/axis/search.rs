@@ -1,0 +1,238 @@
+//! Which set of effects: forward steps and all pairs, exchanges and removals, judged on blocks that were not fitted.
+
+use rayon::prelude::*;
+
+use super::library::Shape;
+use super::regress::Grams;
+
+/// One effect with fixed shape parameters.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    pub(super) shape: Shape,
+    /// Its columns.
+    pub(super) columns: Vec<usize>,
+}
+
+/// A regression to be explained: base columns under priors, and candidates.
+#[derive(Debug)]
+pub(super) struct Problem {
+    pub(super) base: Vec<usize>,
+    pub(super) candidates: Vec<Candidate>,
+    pub(super) grams: Grams,
+    /// Squared error that noise alone would leave.
+    pub(super) floor_square: f64,
+    /// Squared effort over all rows, and the nominal friction.
+    pub(super) effort_square: f64,
+    pub(super) coulomb: f64,
+}
+
+/// An effect must take this share of the gap that was there, and this share of what is left.
+const LEAST_SHARE: f64 = 0.005;
+const LEAST_OF_REST: f64 = 0.03;
+/// And this share of the effort's power, below which a model of any form is wrong; and of the floor.
+const LEAST_OF_EFFORT: f64 = 1e-4;
+const LEAST_OF_FLOOR: f64 = 0.1;
+/// Its gain must exceed its own standard error over blocks by this factor.
+const LEAST_T: f64 = 2.5;
+/// Effects at most; many kinds of ripple count each.
+const MOST: usize = 10;
+/// Candidates of which all pairs are tried.
+const PAIRED: usize = 48;
+
+/// A set with its errors on blocks held out.
+#[derive(Debug, Clone)]
+pub(super) struct Set {
+    pub(super) members: Vec<usize>,
+    pub(super) held_out: Vec<f64>,
+}
+
+impl Set {
+    pub(super) fn square(&self) -> f64 {
+        self.held_out.iter().sum()
+    }
+}
+
+impl Problem {
+    /// Columns of a set.
+    pub(super) fn columns(&self, members: &[usize]) -> Vec<usize> {
+        let own = members.iter().flat_map(|&member| self.candidates[member].columns.iter().copied());
+        self.base.iter().copied().chain(own).collect()
+    }
+
+    /// A set; one whose amplitudes cannot be has no bound to its error.
+    pub(super) fn set(&self, members: Vec<usize>) -> Set {
+        let columns = self.columns(&members);
+        let possible = members.is_empty() || self.possible(&members, &columns);
+        let mut held_out = self.grams.held_out(&columns);
+        if !possible {
+            held_out.iter_mut().for_each(|square| *square = 1e3 * (*square + self.effort_square));
+        }
+        Set { members, held_out }
+    }
+
+    fn possible(&self, members: &[usize], columns: &[usize]) -> bool {
+        let fit = self.grams.fit(columns);
+        let at = |column: usize| columns.iter().position(|c| *c == column).map_or(0.0, |place| fit[place]);
+        let freed = |member: &&usize| self.candidates[**member].shape == Shape::Coulomb;
+        let level = self.coulomb
+            + fit.get(2).copied().unwrap_or(0.0)
+            + members.iter().find(freed).map_or(0.0, |&member| at(self.candidates[member].columns[0]));
+        members.iter().all(|&member| {
+            let own: Vec<f64> = self.candidates[member].columns.iter().map(|&column| at(column)).collect();
+            self.candidates[member].shape.possible(&own, level)
+        })
+    }
+
+    /// Whether a candidate may join.
+    fn fits(&self, members: &[usize], candidate: usize) -> bool {
+        let shape = &self.candidates[candidate].shape;
+        members.iter().all(|&member| {
+            let other = &self.candidates[member].shape;
+            if other.effect() != shape.effect() {
+                return true;
+            }
+            let apart = || {
+                let (a, b) = (other.numbers(), shape.numbers());
+                match (a.first(), b.first()) {
+                    (Some(a), Some(b)) => (a.1 - b.1).abs() > 1e-3 * a.1.abs(),
+                    _ => other != shape,
+                }
+            };
+            shape.many() && member != candidate && apart()
+        })
+    }
+
+    /// The best set found.
+    pub(super) fn search(&self, start: Vec<usize>) -> Set {
+        let all: Vec<usize> = (0..self.candidates.len()).collect();
+        let empty = self.set(Vec::new());
+        let gap = (empty.square() - self.floor_square).max(0.0);
+        let mut best = self.set(start);
+        if best.members.is_empty()
+            && let Some(pair) = self.best_pair(&all)
+            && self.worth(&empty, &pair, gap, 2.0)
+        {
+            best = pair;
+        }
+        for _ in 0..3 * MOST {
+            let before = best.square();
+            best = self.dropped(best, gap);
+            best = self.exchanged(best, &all);
+            if best.members.len() < MOST
+                && let Some(longer) = self.extended(&best, &all)
+                && self.worth(&best, &longer, gap, 1.0)
+            {
+                best = longer;
+            }
+            if best.square() > before * (1.0 - 1e-4) {
+                break;
+            }
+        }
+        self.dropped(best, gap)
+    }
+
+    /// Whether a longer set is worth its effects.
+    fn worth(&self, shorter: &Set, longer: &Set, gap: f64, effects: f64) -> bool {
+        let gain = shorter.square() - longer.square();
+        let rest = (shorter.square() - self.floor_square).max(0.0);
+        let filled = self.grams.counts.iter().filter(|count| **count > 0.0).count().max(2) as f64;
+        let gains: Vec<f64> = shorter.held_out.iter().zip(&longer.held_out).map(|(a, b)| a - b).collect();
+        let mean = gain / filled;
+        let spread: f64 = gains
+            .iter()
+            .zip(&self.grams.counts)
+            .filter(|(_, count)| **count > 0.0)
+            .map(|(g, _)| (g - mean).powi(2))
+            .sum::<f64>()
+            / (filled - 1.0);
+        let error = (spread / filled).sqrt();
+        let least = (LEAST_SHARE * gap)
+            .max(LEAST_OF_REST * rest)
+            .max(LEAST_OF_EFFORT * self.effort_square)
+            .max(LEAST_OF_FLOOR * self.floor_square);
+        rest > 0.0 && gain > effects * least && mean > LEAST_T * error
+    }
+
+    fn best_of(&self, sets: Vec<Vec<usize>>) -> Option<Set> {
+        sets.into_par_iter().map(|members| self.set(members)).min_by(|a, b| a.square().total_cmp(&b.square()))
+    }
+
+    fn extended(&self, set: &Set, all: &[usize]) -> Option<Set> {
+        let longer = all.iter().filter(|&&candidate| self.fits(&set.members, candidate));
+        self.best_of(longer.map(|&candidate| [&set.members[..], &[candidate]].concat()).collect())
+    }
+
+    fn best_pair(&self, all: &[usize]) -> Option<Set> {
+        let mut singles: Vec<Set> = all.par_iter().map(|&candidate| self.set(vec![candidate])).collect();
+        singles.sort_by(|a, b| a.square().total_cmp(&b.square()));
+        let mut kinds: Vec<(&str, usize)> = Vec::new();
+        let mut few = Vec::new();
+        for single in &singles {
+            let kind = self.candidates[single.members[0]].shape.effect();
+            let seen = match kinds.iter_mut().find(|(name, _)| *name == kind) {
+                Some((_, seen)) => seen,
+                None => {
+                    kinds.push((kind, 0));
+                    let last = kinds.len() - 1;
+                    &mut kinds[last].1
+                }
+            };
+            *seen += 1;
+            if *seen <= 3 && few.len() < PAIRED {
+                few.push(single.members[0]);
+            }
+        }
+        let pairs = few.iter().enumerate().flat_map(|(place, &a)| few[place + 1..].iter().map(move |&b| vec![a, b]));
+        self.best_of(pairs.filter(|pair| self.fits(&pair[..1], pair[1])).collect())
+    }
+
+    fn exchanged(&self, mut best: Set, all: &[usize]) -> Set {
+        for place in 0..best.members.len() {
+            let mut others = best.members.clone();
+            others.remove(place);
+            let with = all.iter().filter(|&&candidate| self.fits(&others, candidate));
+            let sets = with.map(|&candidate| {
+                let mut members = best.members.clone();
+                members[place] = candidate;
+                members
+            });
+            if let Some(other) = self.best_of(sets.collect())
+                && other.square() < best.square() * (1.0 - 1e-3)
+            {
+                best = other;
+            }
+        }
+        best
+    }
+
+    fn dropped(&self, mut best: Set, gap: f64) -> Set {
+        while !best.members.is_empty() {
+            let shorter = (0..best.members.len()).map(|place| {
+                let mut members = best.members.clone();
+                members.remove(place);
+                members
+            });
+            match self.best_of(shorter.collect()) {
+                Some(shorter) if !self.worth(&shorter, &best, gap, 1.0) => best = shorter,
+                _ => break,
+            }
+        }
+        best
+    }
+
+    /// Sets that stand beside the best: one member exchanged or left out, and the nominal model.
+    pub(super) fn beside(&self, best: &Set) -> Vec<Set> {
+        let mut sets: Vec<Vec<usize>> = vec![Vec::new()];
+        for place in 0..best.members.len() {
+            let mut others = best.members.clone();
+            others.remove(place);
+            for candidate in (0..self.candidates.len()).filter(|&c| c != best.members[place] && self.fits(&others, c)) {
+                let mut members = others.clone();
+                members.insert(place, candidate);
+                sets.push(members);
+            }
+            sets.push(others);
+        }
+        sets.into_par_iter().map(|members| self.set(members)).collect()
+    }
+}

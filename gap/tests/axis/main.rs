@@ -1,0 +1,4 @@
+//! Plain axes: effects that an independent simulation has are found, those that it has not are not.
+
+mod simulated;
+mod simulator;
