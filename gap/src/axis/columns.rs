@@ -45,7 +45,7 @@ struct Follows {
 fn follows(a: &[f64], b: &[f64], valid: &[bool]) -> Follows {
     let sums = |shift: i32| {
         let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-        let span = SHIFT.unsigned_abs() as usize;
+        let span = SHIFT.unsigned_abs() as usize + 1;
         for k in (span..a.len().saturating_sub(span)).filter(|k| valid[*k]) {
             let other = b[k.saturating_add_signed(shift as isize)];
             ab += a[k] * other;
