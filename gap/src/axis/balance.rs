@@ -52,6 +52,14 @@ pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
     ([fit[0], fit[1], fit[2], fit[3]], rest)
 }
 
+/// Root mean square of what the nominal model leaves.
+pub(super) fn nominal_rest(motion: &Motion, model: &AxisModel) -> f64 {
+    let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
+    let (effort, parameters) = (motion.raw(&motion.effort), nominal(model));
+    let rest = |row: usize| effort[row] - (0..3).map(|place| parameters[place] * base[place][row]).sum::<f64>();
+    rms(&(0..effort.len()).map(rest).collect::<Vec<_>>())
+}
+
 impl Balance {
     /// Makes the balance and every column.
     pub(super) fn new(mut motion: Motion, model: &AxisModel) -> Self {
@@ -107,8 +115,8 @@ impl Balance {
         set_priors(&mut grams, model, rest, &motion, 0);
         let floor_square = motion.floor.powi(2) * target.len() as f64;
         let effort_square = effort.iter().map(|u| u * u).sum();
-        let coulomb = model.coulomb;
-        let problem = Problem { base: vec![0, 1, 2], candidates, grams, floor_square, effort_square, coulomb };
+        let problem =
+            Problem { base: vec![0, 1, 2], candidates, grams, floor_square, effort_square, nominal: Some(parameters) };
         Self { motion, target, effort, columns, problem, hidden }
     }
 
@@ -169,6 +177,7 @@ impl Balance {
             let rest: Vec<usize> = self.problem.columns(&others);
             let span =
                 if name == "wave_number" { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
+            let (from, to) = if name == "exponent" { (0.45, 0.85) } else { (value / span, value * span) };
             let cost = |number: f64| {
                 let grid = shape.with(number).on_grid(&self.motion);
                 let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
@@ -179,7 +188,7 @@ impl Balance {
                 }
                 grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
             };
-            let best = golden(value / span, value * span, cost);
+            let best = golden(from, to, cost);
             let shape = shape.with(best);
             let start = self.columns.len();
             self.columns.extend(shape.on_grid(&self.motion));
@@ -246,7 +255,8 @@ fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<Shape> {
     let fit = grams.fit(&[0, 1, 2, 3]);
     let rest: Vec<f64> =
         (0..target.len()).map(|row| target[row] - (0..4).map(|c| fit[c] * all[c][row]).sum::<f64>()).collect();
-    let (q, needed, s) = (motion.pick(&motion.q), motion.pick(&motion.needed), motion.pick(&motion.s));
+    let (q, v) = (motion.pick(&motion.q), motion.pick(&motion.v));
+    let (needed, s) = (motion.pick(&motion.needed), motion.pick(&motion.s));
     let carriers: [(&dyn Fn(usize) -> f64, &dyn Fn(f64) -> Shape, f64); 3] = [
         (&|_| 1.0, &|wave_number| Shape::Ripple { wave_number }, f64::MAX),
         (&|i| needed[i], &|wave_number| Shape::MotorRipple { wave_number }, f64::MAX),
@@ -261,16 +271,23 @@ fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<Shape> {
         let mut found: Vec<(f64, f64)> = {
             use rayon::prelude::*;
             let carried: Vec<f64> = (0..q.len()).map(|i| carrier(i)).collect();
-            let power: f64 = carried.iter().map(|c| c * c).sum::<f64>().max(1e-300);
+            let sigma_s = motion.period_s * motion.whole_sigma();
             numbers
                 .par_iter()
                 .filter(|k| **k * if motion.rotary { 1.0 } else { motion.travel / std::f64::consts::TAU } <= *most)
                 .map(|&k| {
-                    let (mut re, mut im) = (0.0, 0.0);
+                    let (mut re, mut im, mut power) = (0.0, 0.0, 1e-300);
                     for i in 0..q.len() {
+                        // what the smoothing leaves of a wave at this rate
+                        let blur = 0.5 * (k * v[i] * sigma_s).powi(2);
+                        if blur > 6.0 {
+                            continue;
+                        }
+                        let wave = carried[i] * (-blur).exp();
                         let (sin, cos) = (k * q[i]).sin_cos();
-                        re += carried[i] * rest[i] * cos;
-                        im += carried[i] * rest[i] * sin;
+                        re += wave * rest[i] * cos;
+                        im += wave * rest[i] * sin;
+                        power += wave * wave;
                     }
                     ((re * re + im * im) / power, k)
                 })

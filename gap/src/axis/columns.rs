@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use gimbal_model_file::AxisModel;
 
 use super::balance::{nominal, plain};
-use super::motion::{Motion, MotionFrom, step};
+use super::motion::{Motion, MotionFrom, NARROW, step};
 use super::smooth::Kernel;
 use super::table::AxisLog;
 
@@ -32,6 +32,8 @@ pub(super) struct Checked {
 const SAME: f64 = 0.02;
 /// Correlation below which two columns have nothing to do with each other.
 const UNRELATED: f64 = 0.7;
+/// Rows by which the rate may be late: half a row belongs to any difference of two.
+const LATE: f64 = 0.8;
 /// Rows to either side in which a shift is looked for.
 const SHIFT: i32 = 12;
 
@@ -146,7 +148,9 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
             both.late_rows * period_ms,
             step(velocity)
         ));
-        if both.correlation.abs() < UNRELATED {
+        if super::library::rms(&logged) == 0.0 {
+            checked.words.push(format!("{velocity_name} is zero throughout: the axis stands, or the column is empty"));
+        } else if both.correlation.abs() < UNRELATED {
             let moving = super::library::rms(&rate);
             if moving > 2.0 * step(velocity) {
                 checked.words.push(format!("{velocity_name} and {position_name} do not belong together"));
@@ -163,11 +167,16 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
             } else {
                 from = finer(log, model);
             }
-            if both.late_rows.abs() * period_ms > 0.3 * period_ms.max(0.5) {
+            if both.late_rows > LATE {
+                let late_s = both.late_rows * log.period_s;
                 checked.words.push(format!(
-                    "{velocity_name} is {:.1} ms late: a filter or an older sample",
-                    both.late_rows * period_ms
+                    "{velocity_name} is {:.1} ms late: a filter, a difference over several rows, or an older sample",
+                    1e3 * late_s
                 ));
+                checked.faults.push(ColumnFault {
+                    effect: "velocity_delay",
+                    parameters: vec![("delay", late_s, 0.1 * log.period_s, "s".to_owned())],
+                });
             }
         }
         let used = if from == MotionFrom::Position { &position_name } else { &velocity_name };
@@ -181,14 +190,15 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
 
 /// The column with less noise in the acceleration.
 fn finer(log: &AxisLog, model: &AxisModel) -> MotionFrom {
-    let floor = |from| Motion::new(log, model, from, 1.0).floor;
-    let widest = |from| Motion::new(log, model, from, 1.0).band_hz;
+    let floor = |from| Motion::new(log, model, from, 1.0, NARROW).floor;
+    let widest = |from| Motion::new(log, model, from, 1.0, NARROW).band_hz;
     let (p, v) = (MotionFrom::Position, MotionFrom::Velocity);
-    match widest(p).total_cmp(&widest(v)) {
-        std::cmp::Ordering::Greater => p,
-        std::cmp::Ordering::Less => v,
-        std::cmp::Ordering::Equal if floor(p) <= 1.5 * floor(v) => p,
-        std::cmp::Ordering::Equal => v,
+    // the position is not filtered by anyone: it may cost some of the band
+    match widest(p) / widest(v) {
+        ratio if ratio > 1.01 => p,
+        ratio if ratio < 0.35 => v,
+        _ if floor(p) <= 3.0 * floor(v) => p,
+        _ => v,
     }
 }
 
@@ -201,7 +211,7 @@ fn scale(
     (position_name, velocity_name): (&str, &str),
 ) -> MotionFrom {
     let distance = |from| {
-        let (found, _) = plain(&Motion::new(log, model, from, 1.0));
+        let (found, _) = plain(&Motion::new(log, model, from, 1.0, NARROW));
         let away = |place: usize| {
             let ratio = found[place].abs() / nominal(model)[place].max(1e-300);
             if nominal(model)[place] > 0.0 { ratio.max(1e-6).ln().abs().min(6.0) } else { 0.0 }
@@ -229,7 +239,7 @@ fn scale(
 /// A positive effort must accelerate towards positive positions.
 fn sign(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
     let Some(from) = checked.from else { return };
-    let motion = Motion::new(log, model, from, 1.0);
+    let motion = Motion::new(log, model, from, 1.0, NARROW);
     if motion.stands {
         checked.words.push(format!(
             "the axis stands {:.0} % of the time: the balance is one of rest, without inertia or viscous friction",

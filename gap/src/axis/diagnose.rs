@@ -6,7 +6,7 @@ use super::balance::Balance;
 use super::columns::{self, ColumnFault};
 use super::judge::{Found, Parameter, Ranked, Shrunk, by_block, judge, shrunk};
 use super::library::rms;
-use super::motion::{Motion, MotionFrom};
+use super::motion::{Motion, MotionFrom, NARROW, WIDE};
 use super::place::{AxisRegime, FrictionCurve, bands, friction_curve, regimes, spans, spectrum};
 use super::search::Set;
 use super::table::AxisLog;
@@ -69,12 +69,19 @@ pub struct AxisDiagnosis {
     pub(super) spectra: [Spectrum; 2],
 }
 
+/// Share of the effort from which on a gap is large.
+const LARGE_GAP: f64 = 0.3;
+
 /// A log made ready: columns checked, the motion chosen.
 fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Motion) {
     columns::unwrap(&mut log);
     let checked = columns::check(&log, model);
     let from = checked.from.unwrap_or(MotionFrom::Position);
-    let motion = Motion::new(&log, model, from, checked.effort_sign);
+    let mut motion = Motion::new(&log, model, from, checked.effort_sign, NARROW);
+    // a large gap stands out of more noise: a wider band shows more of it
+    if super::balance::nominal_rest(&motion, model) > LARGE_GAP * rms(&motion.pick(&motion.effort)) {
+        motion = Motion::new(&log, model, from, checked.effort_sign, WIDE);
+    }
     (log, checked, motion)
 }
 
@@ -88,9 +95,14 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     let judged = judge(&balance, &best, model);
     let motion = &balance.motion;
     let after = balance.residual(&best.members);
+    let law = super::law::law(&log, model, &balance.motion);
     let contribution: Vec<f64> = balance.target.iter().zip(&after).map(|(before, after)| before - after).collect();
     let mut found = judged.found;
     let mut verdict = judged.verdict;
+    found.extend(law.found);
+    if !found.is_empty() && verdict == Verdict::NoGap {
+        verdict = Verdict::Explained;
+    }
     for fault in &checked.faults {
         found.insert(0, of_column(fault));
     }
@@ -108,6 +120,9 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     blocks.sort_by(|a, b| b.1.total_cmp(&a.1));
     let gap = verdict != Verdict::NoGap;
     let mut shrunk = vec![judged.shrunk];
+    shrunk.extend(law.shrunk);
+    let mut words = checked.words;
+    words.extend(law.words);
     for (name, log) in unseen {
         shrunk.extend(score(&balance, &best, model, name, log, &mut notes));
     }
@@ -136,7 +151,7 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
         spans: if gap && !best.members.is_empty() { spans(motion, &contribution, rms(&after)) } else { Vec::new() },
         shrunk,
         detectable: detectable(&balance, &best, &after),
-        columns: checked.words,
+        columns: words,
         notes,
         curve: friction_curve(&balance, &best, &judged.drawn, model),
         lines,
@@ -196,7 +211,8 @@ fn score(
         let channel = match candidate.shape {
             super::library::Shape::Load { channel }
             | super::library::Shape::LoadFriction { channel }
-            | super::library::Shape::LoadGain { channel } => Some(&balance.motion.auxiliary[channel].0),
+            | super::library::Shape::LoadGain { channel }
+            | super::library::Shape::LoadRipple { channel, .. } => Some(&balance.motion.auxiliary[channel].0),
             _ => None,
         };
         let there = channel.is_none_or(|name| motion.auxiliary.iter().any(|(other, _)| other == name));

@@ -6,7 +6,7 @@ use super::balance::{Balance, nominal};
 use super::library::{NOMINAL, Shape};
 use super::motion::Motion;
 use super::regress::Draws;
-use super::search::Set;
+use super::search::{LEAST_OF_REST, LEAST_SHARE, Set};
 use crate::judge::Verdict;
 
 /// Draws of the bootstrap.
@@ -160,7 +160,10 @@ fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> Vec<String>
 /// Name of an effect; channels have theirs beside it.
 pub(super) fn label(shape: &Shape, motion: &Motion) -> String {
     match shape {
-        Shape::Load { channel } | Shape::LoadFriction { channel } | Shape::LoadGain { channel } => {
+        Shape::Load { channel }
+        | Shape::LoadFriction { channel }
+        | Shape::LoadGain { channel }
+        | Shape::LoadRipple { channel, .. } => {
             format!("{}:{}", shape.effect(), motion.auxiliary[*channel].0)
         }
         _ => shape.effect().to_owned(),
@@ -271,6 +274,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
             set.effects != own
                 && set.probability > 0.1 * own_probability
                 && !own.iter().all(|name| set.effects.contains(name))
+                && !set.effects.iter().all(|name| own.contains(name))
         })
         .cloned()
         .collect();
@@ -310,14 +314,14 @@ fn within(model: &AxisModel, index: usize, shift: f64, error: f64) -> bool {
     shift.abs() - error <= BEYOND * tolerance * nominal(model)[index]
 }
 
-fn deviation(samples: &[Vec<f64>], place: usize) -> f64 {
+pub(super) fn deviation(samples: &[Vec<f64>], place: usize) -> f64 {
     let count = samples.len().max(2) as f64;
     let mean = samples.iter().map(|s| s[place]).sum::<f64>() / count;
     (samples.iter().map(|s| (s[place] - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
 }
 
 /// Parameters of an effect with their names and units.
-fn parameters(shape: &Shape, own: &[f64], samples: &[Vec<f64>], model: &AxisModel, motion: &Motion) -> Vec<Parameter> {
+pub(super) fn parameters(shape: &Shape, own: &[f64], samples: &[Vec<f64>], model: &AxisModel, motion: &Motion) -> Vec<Parameter> {
     let unit = |power: u32| model.parameter_unit(power);
     let effort = model.effort_unit.clone();
     let length = model.motion.unit();
@@ -335,7 +339,10 @@ fn parameters(shape: &Shape, own: &[f64], samples: &[Vec<f64>], model: &AxisMode
             }
             told
         }
-        Shape::Ripple { .. } | Shape::MotorRipple { .. } | Shape::PositionFriction { .. } => {
+        Shape::Ripple { .. }
+        | Shape::MotorRipple { .. }
+        | Shape::PositionFriction { .. }
+        | Shape::LoadRipple { .. } => {
             let size = |s: &[f64]| s[0].hypot(s[1]);
             let sizes: Vec<Vec<f64>> = samples.iter().map(|s| vec![size(s)]).collect();
             let unit = if matches!(shape, Shape::MotorRipple { .. }) { one() } else { effort };
@@ -403,9 +410,10 @@ fn rank(balance: &Balance, best: &Set, times: &[Vec<f64>], shrunk: &Shrunk, mode
         }
     }
     let rows: f64 = balance.problem.grams.counts.iter().sum::<f64>().max(1.0);
-    let gap = (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(0.0) * rows;
-    // an effect more must earn this much, as it must in the search
-    let cost = |set: &Set| (0.005 * gap + 0.02 * best.square()) * set.members.len() as f64;
+    let gap = (balance.problem.set(Vec::new()).square() - balance.problem.floor_square).max(0.0);
+    // an effect more must earn half of what it must in the search
+    let each = 0.5 * (LEAST_SHARE * gap).max(LEAST_OF_REST * (best.square() - balance.problem.floor_square).max(0.0));
+    let cost = |set: &Set| each * set.members.len() as f64;
     let mut wins = vec![0.0; kinds.len()];
     for times in times {
         let drawn: f64 = balance.problem.grams.counts.iter().zip(times).map(|(c, t)| c * t).sum::<f64>().max(1.0);

@@ -40,6 +40,7 @@ pub(super) enum Shape {
     Load { channel: usize },
     LoadFriction { channel: usize },
     LoadGain { channel: usize },
+    LoadRipple { channel: usize, wave_number: f64 },
 }
 
 /// Parameters of the nominal model.
@@ -77,6 +78,7 @@ impl Shape {
             Self::Load { .. } => "external_load",
             Self::LoadFriction { .. } => "load_friction",
             Self::LoadGain { .. } => "load_gain",
+            Self::LoadRipple { .. } => "load_ripple",
         }
     }
 
@@ -96,7 +98,7 @@ impl Shape {
             | Self::PositionFriction { .. }
             | Self::FrictionTaper
             | Self::LoadFriction { .. } => "friction",
-            Self::Constant | Self::Spring | Self::Hysteresis { .. } | Self::Ripple { .. } | Self::Load { .. } => {
+            Self::Constant | Self::Spring | Self::Hysteresis { .. } | Self::Ripple { .. } | Self::LoadRipple { .. } | Self::Load { .. } => {
                 "disturbance"
             }
             Self::MotorRipple { .. } | Self::DeadZone | Self::TorqueCurve | Self::Lag | Self::LoadGain { .. } => {
@@ -117,6 +119,7 @@ impl Shape {
                 | Self::Load { .. }
                 | Self::LoadFriction { .. }
                 | Self::LoadGain { .. }
+                | Self::LoadRipple { .. }
         )
     }
 
@@ -147,6 +150,7 @@ impl Shape {
                 vec![("time_constant", time_s)]
             }
             Self::PositionFriction { wave_number }
+            | Self::LoadRipple { wave_number, .. }
             | Self::Ripple { wave_number }
             | Self::MotorRipple { wave_number } => vec![("wave_number", wave_number)],
             Self::Hysteresis { width } | Self::Backlash { width } => vec![("width", width)],
@@ -165,6 +169,7 @@ impl Shape {
             | Self::ViscousDrift { time_s: place }
             | Self::BiasDrift { time_s: place }
             | Self::PositionFriction { wave_number: place }
+            | Self::LoadRipple { wave_number: place, .. }
             | Self::Ripple { wave_number: place }
             | Self::MotorRipple { wave_number: place }
             | Self::Hysteresis { width: place }
@@ -219,6 +224,7 @@ impl Shape {
             }
             Self::Load { channel } => vec![m.auxiliary[channel].1.clone()],
             Self::LoadFriction { channel } => vec![by(&|i| m.s[i] * m.auxiliary[channel].1[i])],
+            Self::LoadRipple { channel, wave_number } => waves(wave_number, &|i| m.auxiliary[channel].1[i]),
             Self::LoadGain { channel } => vec![by(&|i| m.needed[i] * m.auxiliary[channel].1[i])],
         }
     }
@@ -288,7 +294,7 @@ pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
             shapes.extend([1.0, 2.0].map(|exponent| Shape::Stribeck { rate, exponent }));
         }
     }
-    for exponent in [0.3, 0.5, 0.667] {
+    for exponent in [0.5, 0.667] {
         shapes.push(Shape::ViscousCurve { exponent });
     }
     for share in [3e-4, 1e-3, 3e-3, 1e-2, 3e-2] {

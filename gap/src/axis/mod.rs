@@ -6,6 +6,7 @@ mod balance;
 mod columns;
 mod diagnose;
 mod judge;
+mod law;
 mod library;
 mod motion;
 mod place;

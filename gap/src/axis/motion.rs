@@ -11,8 +11,9 @@ use super::table::AxisLog;
 
 /// Shares of the sampling rate that the band may end at, the widest first.
 const BANDS: [f64; 6] = [0.1, 0.0667, 0.04, 0.025, 0.0167, 0.01];
-/// Noise that the acceleration may bring into the balance, as a share of the effort.
-const NOISE_SHARE: f64 = 0.01;
+/// Noise that the acceleration may bring into the balance, as a share of the effort: of a small gap and of a large one.
+pub(super) const NARROW: f64 = 0.01;
+pub(super) const WIDE: f64 = 0.04;
 /// Blocks of time: what is held out, and what the bootstrap draws.
 pub(super) const BLOCKS: usize = 32;
 /// An axis is at rest when it stays slow this long [s].
@@ -97,7 +98,7 @@ pub(super) fn step(values: &[f64]) -> f64 {
 
 impl Motion {
     #[allow(clippy::too_many_lines, reason = "one chain from the columns to the grid")]
-    pub(super) fn new(log: &AxisLog, model: &AxisModel, from: MotionFrom, effort_sign: f64) -> Self {
+    pub(super) fn new(log: &AxisLog, model: &AxisModel, from: MotionFrom, effort_sign: f64, noise_share: f64) -> Self {
         let period_s = log.period_s;
         let rate_hz = 1.0 / period_s;
         let position: Vec<f64> = match (from, &log.position, &log.velocity) {
@@ -134,7 +135,7 @@ impl Motion {
             position_noise * Kernel::new(sigma, order, period_s).noise_gain()
         };
         let band_hz = model.band_hz.unwrap_or_else(|| {
-            let good = |share: &&f64| model.inertia * noise_at(**share * rate_hz) < NOISE_SHARE * spread;
+            let good = |share: &&f64| model.inertia * noise_at(**share * rate_hz) < noise_share * spread;
             BANDS.iter().find(good).unwrap_or(&BANDS[BANDS.len() - 1]) * rate_hz
         });
         let sigma = HALF_POWER / band_hz * rate_hz;
@@ -216,6 +217,11 @@ impl Motion {
             at_rest,
             stands,
         }
+    }
+
+    /// Standard deviation of the whole smoothing [rows].
+    pub(super) fn whole_sigma(&self) -> f64 {
+        HALF_POWER / self.band_hz / self.period_s * 2.0_f64.sqrt()
     }
 
     /// A smoothed signal on the grid of the balance.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::library::Shape;
+use super::library::{NOMINAL, Shape};
 use super::regress::Grams;
 
 /// One effect with fixed shape parameters.
@@ -23,12 +23,13 @@ pub(super) struct Problem {
     pub(super) floor_square: f64,
     /// Squared effort over all rows, and the nominal friction.
     pub(super) effort_square: f64,
-    pub(super) coulomb: f64,
+    /// Nominal parameters, where the base columns are they.
+    pub(super) nominal: Option<[f64; 3]>,
 }
 
 /// An effect must take this share of the gap that was there, and this share of what is left.
-const LEAST_SHARE: f64 = 0.005;
-const LEAST_OF_REST: f64 = 0.03;
+pub(super) const LEAST_SHARE: f64 = 0.005;
+pub(super) const LEAST_OF_REST: f64 = 0.03;
 /// And this share of the effort's power, below which a model of any form is wrong; and of the floor.
 const LEAST_OF_EFFORT: f64 = 1e-4;
 const LEAST_OF_FLOOR: f64 = 0.1;
@@ -73,10 +74,19 @@ impl Problem {
     fn possible(&self, members: &[usize], columns: &[usize]) -> bool {
         let fit = self.grams.fit(columns);
         let at = |column: usize| columns.iter().position(|c| *c == column).map_or(0.0, |place| fit[place]);
-        let freed = |member: &&usize| self.candidates[**member].shape == Shape::Coulomb;
-        let level = self.coulomb
-            + fit.get(2).copied().unwrap_or(0.0)
-            + members.iter().find(freed).map_or(0.0, |&member| at(self.candidates[member].columns[0]));
+        let mut level = f64::MAX;
+        if let Some(nominal) = self.nominal {
+            let total = |index: usize| {
+                let freed = |member: &&usize| self.candidates[**member].shape == NOMINAL[index];
+                let own = members.iter().find(freed).map_or(0.0, |&member| at(self.candidates[member].columns[0]));
+                nominal[index] + fit[index] + own
+            };
+            // an effort that follows the rate with the sign of a drive is the loop's own law, not friction
+            if (0..3).any(|index| total(index) < 0.0) {
+                return false;
+            }
+            level = total(2);
+        }
         members.iter().all(|&member| {
             let own: Vec<f64> = self.candidates[member].columns.iter().map(|&column| at(column)).collect();
             self.candidates[member].shape.possible(&own, level)

@@ -1,0 +1,217 @@
+//! The control law, where the model file knows it: what the controller gave, over what its law says.
+//!
+//! ```text
+//! output = Kp (reference - position) + Kv (rate reference - rate) + what was added
+//! ```
+//!
+//! Here stand what never shows in the balance: loads and compensations that are added to the output, and gains that
+//! are not those of the model. The rate is the one that is logged, for the loop sees no other.
+
+use gimbal_model_file::AxisModel;
+use gimbal_model_file::axis::{Controller, Output};
+
+use super::judge::{Found, Parameter, Shrunk, deviation, parameters, shrunk};
+use super::library::{Shape, rms};
+use super::motion::Motion;
+use super::regress::{Draws, Grams};
+use super::search::{Candidate, Problem};
+use super::table::AxisLog;
+
+/// What the law shows.
+#[derive(Debug, Default)]
+pub(super) struct Law {
+    pub(super) found: Vec<Found>,
+    pub(super) shrunk: Option<Shrunk>,
+    pub(super) words: Vec<String>,
+}
+
+/// Waves kept from the search.
+const KEPT_WAVES: usize = 8;
+/// A gain is another one from this many tolerances on.
+const BEYOND: f64 = 1.15;
+/// Share of the output below which a law is as good as any.
+const NOISE: f64 = 1e-3;
+
+/// Errors that the law multiplies, on the grid, and its gains.
+fn errors(log: &AxisLog, controller: &Controller, m: &Motion) -> Option<Vec<(&'static str, f64, Vec<f64>)>> {
+    let mut errors = Vec::new();
+    if controller.position_gain != 0.0 {
+        let (reference, position) = (log.position_reference.as_ref()?, log.position.as_ref()?);
+        let error: Vec<f64> = reference.iter().zip(position).map(|(r, q)| r - q).collect();
+        errors.push(("position_gain", controller.position_gain, m.raw(&error)));
+    }
+    if controller.velocity_gain != 0.0 {
+        let rate = match &log.velocity {
+            Some(velocity) => m.raw(velocity),
+            None => m.smoothed(&m.v),
+        };
+        let reference = log.velocity_reference.as_ref().map_or_else(|| vec![0.0; rate.len()], |r| m.raw(r));
+        let error = reference.iter().zip(&rate).map(|(r, v)| r - v).collect();
+        errors.push(("velocity_gain", controller.velocity_gain, error));
+    }
+    (!errors.is_empty()).then_some(errors)
+}
+
+/// Waves over the position that stand out of a residual while a channel is on.
+fn waves(m: &Motion, channel: usize, rest: &[f64]) -> Vec<Shape> {
+    let (q, v) = (m.pick(&m.q), m.pick(&m.v));
+    let on = m.pick(&m.auxiliary[channel].1);
+    let sigma_s = m.period_s * m.whole_sigma();
+    let mut found: Vec<(f64, f64)> = m
+        .wave_numbers()
+        .into_iter()
+        .map(|k| {
+            let (mut re, mut im, mut power) = (0.0, 0.0, 1e-300);
+            for i in (0..q.len()).filter(|&i| on[i] != 0.0) {
+                let wave = on[i] * (-0.5 * (k * v[i] * sigma_s).powi(2)).exp();
+                let (sin, cos) = (k * q[i]).sin_cos();
+                re += wave * rest[i] * cos;
+                im += wave * rest[i] * sin;
+                power += wave * wave;
+            }
+            ((re * re + im * im) / power, k)
+        })
+        .collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found
+        .iter()
+        .take(KEPT_WAVES)
+        .map(|(_, wave_number)| Shape::LoadRipple { channel, wave_number: *wave_number })
+        .collect()
+}
+
+/// Holds the law against the log.
+#[allow(clippy::too_many_lines, reason = "one chain from the law to its words")]
+pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
+    let Some(controller) = &model.controller else { return Law::default() };
+    let Some(errors) = errors(log, controller, motion) else {
+        let words =
+            vec!["the control law is known, but not what it follows: its reference is not in this file".to_owned()];
+        return Law { words, ..Law::default() };
+    };
+    let (output, unit) = match (controller.output, &log.command, &model.columns.command) {
+        (Output::Command, Some(command), Some(source)) => (command, source.unit.clone()),
+        (Output::Effort, ..) => (&log.effort, model.effort_unit.clone()),
+        _ => return Law::default(),
+    };
+    let given = motion.raw(output);
+    let mut m = motion.clone();
+    let rows = given.len();
+    let said: Vec<f64> = (0..rows).map(|row| errors.iter().map(|(_, gain, error)| gain * error[row]).sum()).collect();
+    let target: Vec<f64> = given.iter().zip(&said).map(|(u, law)| u - law).collect();
+    // the law at every row, for what hangs on its derivative
+    m.needed = vec![0.0; m.q.len()];
+    let mut columns: Vec<Vec<f64>> = errors.iter().map(|(_, _, error)| error.clone()).collect();
+    let base: Vec<usize> = (0..columns.len()).collect();
+    let mut shapes = vec![Shape::Constant];
+    for channel in 0..m.auxiliary.len() {
+        shapes.extend([Shape::Load { channel }, Shape::LoadFriction { channel }]);
+        let mean = target.iter().sum::<f64>() / rows.max(1) as f64;
+        let rest: Vec<f64> = target.iter().map(|value| value - mean).collect();
+        shapes.extend(waves(&m, channel, &rest));
+    }
+    let mut candidates = Vec::new();
+    for shape in shapes {
+        let start = columns.len();
+        columns.extend(shape.on_grid(&m));
+        candidates.push(Candidate { shape, columns: (start..columns.len()).collect() });
+    }
+    let mut grams = Grams::new(&columns, &target, &m.block);
+    let lag = 1 + 2 * super::balance::correlation(&target);
+    for (place, (_, gain, _)) in errors.iter().enumerate() {
+        let variance = rms(&target).powi(2).max((NOISE * rms(&given)).powi(2)) * lag as f64;
+        grams.precision[place] = variance / (controller.tolerance * gain).powi(2);
+    }
+    let floor = NOISE * rms(&given);
+    let problem = Problem {
+        base,
+        candidates,
+        grams,
+        floor_square: floor.powi(2) * rows as f64,
+        effort_square: given.iter().map(|u| u * u).sum(),
+        nominal: None,
+    };
+    let best = problem.search(Vec::new());
+    let set = problem.columns(&best.members);
+    let fit = problem.grams.fit(&set);
+    let mut draws = Draws::new();
+    let times: Vec<Vec<f64>> = (0..200).map(|_| draws.draw(&problem.grams.counts)).collect();
+    let drawn: Vec<Vec<f64>> = times.iter().filter_map(|times| problem.grams.fit_drawn(&set, times)).collect();
+    let before = super::judge::by_block(&target, &m);
+    let shrunk = shrunk("control law".to_owned(), &unit, &before, &best.held_out, &problem.grams.counts, floor);
+    let mut law = Law::default();
+    law.words.push(format!(
+        "the control law leaves {:.3e} {unit} rms of an output of {:.3e} {unit} rms, {:.3e} with what is named below",
+        shrunk.before,
+        rms(&given),
+        shrunk.after
+    ));
+    for (place, (name, gain, _)) in errors.iter().enumerate() {
+        let error = deviation(&drawn, place);
+        let found = gain + fit[place];
+        law.words.push(format!("{name} {found:.5} +- {error:.1e} (model {gain:.5})"));
+        if fit[place].abs() - error > BEYOND * controller.tolerance * gain.abs() {
+            let new = |name: &str, value: f64, std: f64, unit: &str| Parameter {
+                name: name.to_owned(),
+                value,
+                std,
+                unit: unit.to_owned(),
+            };
+            let of = if *name == "position_gain" {
+                model.motion.unit().to_owned()
+            } else {
+                format!("{}/s", model.motion.unit())
+            };
+            law.found.push(Found {
+                effect: "loop_gain".to_owned(),
+                block: "servo",
+                probability: 0.95,
+                parameters: vec![
+                    new(name, found, error, &format!("{unit}/({of})")),
+                    new("relative_change", fit[place] / gain, error / gain.abs(), "1"),
+                ],
+                removes: 0.0,
+            });
+        }
+    }
+    for (place, &member) in best.members.iter().enumerate() {
+        let shape = &problem.candidates[member].shape;
+        let at: Vec<usize> =
+            problem.candidates[member].columns.iter().filter_map(|c| set.iter().position(|s| s == c)).collect();
+        let own: Vec<f64> = at.iter().map(|&place| fit[place]).collect();
+        let samples: Vec<Vec<f64>> = drawn.iter().map(|d| at.iter().map(|&place| d[place]).collect()).collect();
+        let mut parameters = parameters(shape, &own, &samples, model, &m);
+        for parameter in &mut parameters {
+            parameter.unit = parameter.unit.replace(&model.effort_unit, &unit);
+        }
+        let mut without = best.members.clone();
+        without.remove(place);
+        let without = problem.set(without);
+        let wins = times
+            .iter()
+            .filter(|times| {
+                let of = |squares: &[f64]| squares.iter().zip(times.iter()).map(|(s, t)| s * t).sum::<f64>();
+                of(&without.held_out) > of(&best.held_out)
+            })
+            .count();
+        let channel = |channel: usize| &m.auxiliary[channel].0;
+        let effect = match shape {
+            Shape::Constant => "command_bias".to_owned(),
+            Shape::Load { channel: c } => format!("external_load:{}", channel(*c)),
+            Shape::LoadFriction { channel: c } | Shape::LoadRipple { channel: c, .. } => {
+                format!("compensation:{}", channel(*c))
+            }
+            _ => shape.effect().to_owned(),
+        };
+        let gain = (without.square() - best.square()) / before.iter().sum::<f64>().max(1e-300);
+        law.found.push(Found {
+            effect,
+            block: "servo",
+            probability: wins as f64 / (times.len() + 1) as f64,
+            parameters,
+            removes: gain.clamp(0.0, 1.0),
+        });
+    }
+    law.shrunk = Some(shrunk);
+    law
+}
