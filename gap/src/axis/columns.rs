@@ -98,6 +98,19 @@ fn looks_like(factor: f64) -> String {
     format!("{sign}no known ratio")
 }
 
+/// Takes a signal `rows` earlier.
+pub(super) fn advance(values: &mut [f64], rows: f64) {
+    let last = values.len() - 1;
+    let old = values.to_vec();
+    for (k, value) in values.iter_mut().enumerate() {
+        let place = (k as f64 + rows).clamp(0.0, last as f64);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the rows")]
+        let low = place.floor() as usize;
+        let share = place - low as f64;
+        *value = old[low] + share * (old[(low + 1).min(last)] - old[low]);
+    }
+}
+
 /// Position of a rotary axis that wraps, unwrapped.
 pub(super) fn unwrap(log: &mut AxisLog) {
     let Some(position) = &mut log.position else { return };

@@ -77,10 +77,24 @@ fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Mot
     columns::unwrap(&mut log);
     let checked = columns::check(&log, model);
     let from = checked.from.unwrap_or(MotionFrom::Position);
-    let mut motion = Motion::new(&log, model, from, checked.effort_sign, NARROW);
+    let late = checked.faults.iter().find(|fault| fault.effect == "velocity_delay").map(|fault| fault.parameters[0].1);
+    let scaled = checked.faults.iter().any(|fault| fault.effect.ends_with("_scale"));
+    if let (Some(late_s), MotionFrom::Velocity, Some(velocity)) = (late, from, &mut log.velocity) {
+        columns::advance(velocity, late_s / log.period_s);
+        log.notes.push(format!("the rate is taken {:.1} ms earlier for the balance", 1e3 * late_s));
+    }
+    let motion_of = |noise_share: f64| {
+        let mut motion = Motion::new(&log, model, from, checked.effort_sign, noise_share);
+        // an integrated rate loses the angle; the position column keeps it
+        if let (MotionFrom::Velocity, Some(position), false) = (from, &log.position, scaled) {
+            motion.q = motion.rest.apply(position);
+        }
+        motion
+    };
+    let mut motion = motion_of(NARROW);
     // a large gap stands out of more noise: a wider band shows more of it
     if super::balance::nominal_rest(&motion, model) > LARGE_GAP * rms(&motion.pick(&motion.effort)) {
-        motion = Motion::new(&log, model, from, checked.effort_sign, WIDE);
+        motion = motion_of(WIDE);
     }
     (log, checked, motion)
 }
@@ -110,8 +124,9 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
         verdict = Verdict::Explained;
     }
     let mut blocks: Vec<(String, f64)> = Vec::new();
-    let all: f64 = found.iter().map(|found| found.removes).sum::<f64>().max(1e-300);
-    for found in &found {
+    let balanced = || found.iter().filter(|found| found.shows_in == "effort");
+    let all: f64 = balanced().map(|found| found.removes).sum::<f64>().max(1e-300);
+    for found in balanced() {
         match blocks.iter_mut().find(|(name, _)| name == found.block) {
             Some((_, share)) => *share += found.removes / all,
             None => blocks.push((found.block.to_owned(), found.removes / all)),
@@ -170,7 +185,14 @@ fn of_column(fault: &ColumnFault) -> Found {
             unit: unit.clone(),
         })
         .collect();
-    Found { effect: fault.effect.to_owned(), block: "measurement", probability: 0.98, parameters, removes: 0.0 }
+    Found {
+        effect: fault.effect.to_owned(),
+        block: "measurement",
+        probability: 0.98,
+        parameters,
+        removes: 0.0,
+        shows_in: "columns",
+    }
 }
 
 /// What the fit to one log leaves of another.

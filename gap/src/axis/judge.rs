@@ -15,6 +15,8 @@ const DRAWS: usize = 200;
 const BEYOND: f64 = 1.15;
 /// Share of the gap that may be left over by what explains it.
 const LEFT: f64 = 0.03;
+/// Share of the gap that is a trifle.
+const TRIFLE: f64 = 0.01;
 /// A gap is one from this power over the floor on.
 const NOTABLE: f64 = 1.5;
 
@@ -44,6 +46,8 @@ pub struct Found {
     pub parameters: Vec<Parameter>,
     /// Share of the gap that it takes away.
     pub removes: f64,
+    /// Where it shows: `effort` (the balance), `control law` or `columns`.
+    pub shows_in: &'static str,
 }
 
 /// A set of effects.
@@ -243,7 +247,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
         let effect = label(shape, &balance.motion);
         let probability = marginal(&effect);
         let removes = (powers[place] / all * gone).clamp(0.0, 1.0);
-        found.push(Found { effect, block: shape.block(), probability, parameters, removes });
+        found.push(Found { effect, block: shape.block(), probability, parameters, removes, shows_in: "effort" });
     }
     for shape in &outside {
         let parameters = match indices(shape)[..] {
@@ -263,7 +267,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
         };
         let effect = shape.effect().to_owned();
         let (probability, removes) = (marginal(&effect), of_shift(&indices(shape)) / all * gone);
-        found.push(Found { effect, block: shape.block(), probability, parameters, removes });
+        found.push(Found { effect, block: shape.block(), probability, parameters, removes, shows_in: "effort" });
     }
     found.sort_by(|a, b| b.removes.total_cmp(&a.removes));
     let own = names(balance, &best.members, model);
@@ -278,6 +282,11 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
         })
         .cloned()
         .collect();
+    // what differs in a trifle alone is told by the probability of the trifle
+    alternatives.retain(|set| {
+        let misses = |found: &&Found| found.removes >= TRIFLE && !set.effects.contains(&found.effect);
+        found.iter().any(|found| misses(&found))
+    });
     let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
     let left = (shrunk.after.powi(2) - shrunk.noise_floor.powi(2)).max(0.0);
     let there = (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(1e-300);
@@ -321,7 +330,13 @@ pub(super) fn deviation(samples: &[Vec<f64>], place: usize) -> f64 {
 }
 
 /// Parameters of an effect with their names and units.
-pub(super) fn parameters(shape: &Shape, own: &[f64], samples: &[Vec<f64>], model: &AxisModel, motion: &Motion) -> Vec<Parameter> {
+pub(super) fn parameters(
+    shape: &Shape,
+    own: &[f64],
+    samples: &[Vec<f64>],
+    model: &AxisModel,
+    motion: &Motion,
+) -> Vec<Parameter> {
     let unit = |power: u32| model.parameter_unit(power);
     let effort = model.effort_unit.clone();
     let length = model.motion.unit();
@@ -360,7 +375,7 @@ pub(super) fn parameters(shape: &Shape, own: &[f64], samples: &[Vec<f64>], model
             ]
         }
         Shape::Scale | Shape::LoadDependence => vec![amplitude("relative", one())],
-        Shape::Lag => vec![amplitude("time_s", "s".to_owned())],
+        Shape::Lag | Shape::RateDelay => vec![amplitude("time_s", "s".to_owned())],
         Shape::Quadratic => vec![amplitude("coefficient", format!("{effort} s2/{length}2"))],
         Shape::ViscousCurve { .. } => vec![amplitude("coefficient", format!("{effort} (s/{length})^exponent"))],
         Shape::ViscousDrift { .. } => vec![amplitude("change", unit(1))],

@@ -84,7 +84,13 @@ fn waves(m: &Motion, channel: usize, rest: &[f64]) -> Vec<Shape> {
 #[allow(clippy::too_many_lines, reason = "one chain from the law to its words")]
 pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     let Some(controller) = &model.controller else { return Law::default() };
-    let Some(errors) = errors(log, controller, motion) else {
+    if motion.stands {
+        return Law::default();
+    }
+    let columns = &model.columns;
+    let lost = columns.position_reference.is_some() && log.position_reference.is_none()
+        || columns.velocity_reference.is_some() && log.velocity_reference.is_none();
+    let Some(errors) = errors(log, controller, motion).filter(|_| !lost) else {
         let words =
             vec!["the control law is known, but not what it follows: its reference is not in this file".to_owned()];
         return Law { words, ..Law::default() };
@@ -99,7 +105,6 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     let rows = given.len();
     let said: Vec<f64> = (0..rows).map(|row| errors.iter().map(|(_, gain, error)| gain * error[row]).sum()).collect();
     let target: Vec<f64> = given.iter().zip(&said).map(|(u, law)| u - law).collect();
-    // the law at every row, for what hangs on its derivative
     m.needed = vec![0.0; m.q.len()];
     let mut columns: Vec<Vec<f64>> = errors.iter().map(|(_, _, error)| error.clone()).collect();
     let base: Vec<usize> = (0..columns.len()).collect();
@@ -116,6 +121,12 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         columns.extend(shape.on_grid(&m));
         candidates.push(Candidate { shape, columns: (start..columns.len()).collect() });
     }
+    // a late rate, where the loop makes it itself, and a late output
+    if log.velocity.is_none() && controller.velocity_gain != 0.0 {
+        let late: Vec<f64> = m.smoothed(&m.a).iter().map(|a| controller.velocity_gain * a).collect();
+        candidates.push(Candidate { shape: Shape::RateDelay, columns: vec![columns.len()] });
+        columns.push(late);
+    }
     let mut grams = Grams::new(&columns, &target, &m.block);
     let lag = 1 + 2 * super::balance::correlation(&target);
     for (place, (_, gain, _)) in errors.iter().enumerate() {
@@ -131,7 +142,16 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         effort_square: given.iter().map(|u| u * u).sum(),
         nominal: None,
     };
-    let best = problem.search(Vec::new());
+    let mut problem = problem;
+    let mut best = problem.search(Vec::new());
+    // what is known of the gains weighs against what is then left
+    for _ in 0..2 {
+        let variance = (best.square() / rows.max(1) as f64).max((NOISE * rms(&given)).powi(2)) * lag as f64;
+        for (place, (_, gain, _)) in errors.iter().enumerate() {
+            problem.grams.precision[place] = variance / (controller.tolerance * gain).powi(2);
+        }
+        best = problem.search(best.members);
+    }
     let set = problem.columns(&best.members);
     let fit = problem.grams.fit(&set);
     let mut draws = Draws::new();
@@ -171,6 +191,7 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
                     new("relative_change", fit[place] / gain, error / gain.abs(), "1"),
                 ],
                 removes: 0.0,
+                shows_in: "control law",
             });
         }
     }
@@ -210,6 +231,7 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
             probability: wins as f64 / (times.len() + 1) as f64,
             parameters,
             removes: gain.clamp(0.0, 1.0),
+            shows_in: "control law",
         });
     }
     law.shrunk = Some(shrunk);

@@ -18,29 +18,63 @@ pub(super) enum Shape {
     Scale,
     Constant,
     Asymmetry,
-    Stribeck { rate: f64, exponent: f64 },
-    Presliding { displacement: f64 },
+    Stribeck {
+        rate: f64,
+        exponent: f64,
+    },
+    Presliding {
+        displacement: f64,
+    },
     Quadratic,
-    ViscousCurve { exponent: f64 },
-    FrictionDrift { time_s: f64 },
-    ViscousDrift { time_s: f64 },
-    BiasDrift { time_s: f64 },
+    ViscousCurve {
+        exponent: f64,
+    },
+    FrictionDrift {
+        time_s: f64,
+    },
+    ViscousDrift {
+        time_s: f64,
+    },
+    BiasDrift {
+        time_s: f64,
+    },
     LoadDependence,
-    PositionFriction { wave_number: f64 },
+    PositionFriction {
+        wave_number: f64,
+    },
     FrictionTaper,
     Spring,
-    Hysteresis { width: f64 },
-    Ripple { wave_number: f64 },
-    MotorRipple { wave_number: f64 },
+    Hysteresis {
+        width: f64,
+    },
+    Ripple {
+        wave_number: f64,
+    },
+    MotorRipple {
+        wave_number: f64,
+    },
     DeadZone,
     TorqueCurve,
     Lag,
     Flexible,
-    Backlash { width: f64 },
-    Load { channel: usize },
-    LoadFriction { channel: usize },
-    LoadGain { channel: usize },
-    LoadRipple { channel: usize, wave_number: f64 },
+    Backlash {
+        width: f64,
+    },
+    Load {
+        channel: usize,
+    },
+    LoadFriction {
+        channel: usize,
+    },
+    LoadGain {
+        channel: usize,
+    },
+    LoadRipple {
+        channel: usize,
+        wave_number: f64,
+    },
+    /// Of the control law alone: the rate that the loop sees is late.
+    RateDelay,
 }
 
 /// Parameters of the nominal model.
@@ -79,6 +113,7 @@ impl Shape {
             Self::LoadFriction { .. } => "load_friction",
             Self::LoadGain { .. } => "load_gain",
             Self::LoadRipple { .. } => "load_ripple",
+            Self::RateDelay => "velocity_delay",
         }
     }
 
@@ -98,12 +133,18 @@ impl Shape {
             | Self::PositionFriction { .. }
             | Self::FrictionTaper
             | Self::LoadFriction { .. } => "friction",
-            Self::Constant | Self::Spring | Self::Hysteresis { .. } | Self::Ripple { .. } | Self::LoadRipple { .. } | Self::Load { .. } => {
-                "disturbance"
-            }
-            Self::MotorRipple { .. } | Self::DeadZone | Self::TorqueCurve | Self::Lag | Self::LoadGain { .. } => {
-                "servo"
-            }
+            Self::Constant
+            | Self::Spring
+            | Self::Hysteresis { .. }
+            | Self::Ripple { .. }
+            | Self::LoadRipple { .. }
+            | Self::Load { .. } => "disturbance",
+            Self::RateDelay
+            | Self::MotorRipple { .. }
+            | Self::DeadZone
+            | Self::TorqueCurve
+            | Self::Lag
+            | Self::LoadGain { .. } => "servo",
             Self::Inertia | Self::Flexible | Self::Backlash { .. } => "structure",
             Self::Scale | Self::BiasDrift { .. } => "measurement",
         }
@@ -126,13 +167,14 @@ impl Shape {
     /// Whether amplitudes are possible: friction brakes, springs pull back, lags are late. `level` is the friction.
     pub(super) fn possible(&self, amplitudes: &[f64], level: f64) -> bool {
         match self {
-            Self::Stribeck { .. }
-            | Self::Quadratic
+            Self::Stribeck { .. } => amplitudes[0] > 0.0 && amplitudes[0] < 3.0 * level.abs(),
+            Self::Quadratic
             | Self::LoadDependence
             | Self::Spring
             | Self::Hysteresis { .. }
             | Self::DeadZone
             | Self::Lag
+            | Self::RateDelay
             | Self::Flexible => amplitudes[0] > 0.0,
             Self::Presliding { .. } => amplitudes[0] > 0.0 && amplitudes[0] < 1.5 * level.abs(),
             Self::Backlash { .. } => amplitudes[0] < 0.0 && amplitudes[1] < 0.0,
@@ -216,6 +258,7 @@ impl Shape {
             Self::MotorRipple { wave_number } => waves(wave_number, &|i| m.needed[i]),
             Self::DeadZone => vec![by(&|i| (m.needed[i] / (0.02 * size)).clamp(-1.0, 1.0))],
             Self::TorqueCurve => vec![by(&|i| (m.needed[i] / size).powi(3))],
+            Self::RateDelay => vec![m.a.clone()],
             Self::Lag => vec![m.derivative(&m.whole.apply(&m.needed))],
             Self::Flexible => vec![m.derivative(&m.derivative(&m.rest.apply(&m.a)))],
             Self::Backlash { width } => {

@@ -28,10 +28,10 @@ pub fn json(diagnosis: &AxisDiagnosis, log: &str, model: &str) -> Value {
             .collect::<Vec<_>>();
         object!({
             "name": found.effect, "block": found.block, "probability": found.probability,
-            "parameters": parameters, "removes": found.removes,
+            "parameters": parameters, "removes": found.removes, "shows_in": found.shows_in,
         })
     });
-    let own: Vec<String> = diagnosis.found.iter().map(|found| found.effect.clone()).collect();
+    let own = own(diagnosis);
     object!({
         "schema": "gimbal-gap/1",
         "log": {
@@ -67,6 +67,12 @@ pub fn json(diagnosis: &AxisDiagnosis, log: &str, model: &str) -> Value {
         })).collect::<Vec<_>>(),
         "notes": diagnosis.notes,
     })
+}
+
+/// Effects of the balance, which the alternatives are alternatives of.
+fn own(diagnosis: &AxisDiagnosis) -> Vec<String> {
+    let balanced = diagnosis.found.iter().filter(|found| found.shows_in == "effort");
+    balanced.map(|found| found.effect.clone()).collect()
 }
 
 /// Alternatives belong to `cannot_tell` alone.
@@ -108,9 +114,12 @@ pub fn text(diagnosis: &AxisDiagnosis) -> String {
         Verdict::CannotTell => writeln!(out, "Cannot tell: this, or one of the sets below:"),
     };
     for (found, sentence) in diagnosis.found.iter().zip(&named) {
-        let _ = writeln!(out, "  {:5.1} %  {sentence}", 100.0 * found.removes);
+        let _ = match found.shows_in {
+            "effort" => writeln!(out, "  {:5.1} %  {sentence}", 100.0 * found.removes),
+            domain => writeln!(out, "  in the {domain}: {sentence}"),
+        };
     }
-    let own: Vec<String> = diagnosis.found.iter().map(|found| found.effect.clone()).collect();
+    let own = own(diagnosis);
     for set in diagnosis.alternatives.iter().take(4) {
         let instead: Vec<&str> = set.effects.iter().filter(|name| !own.contains(name)).map(String::as_str).collect();
         let of: Vec<&str> = own.iter().filter(|name| !set.effects.contains(name)).map(String::as_str).collect();

@@ -2,7 +2,7 @@
 
 use std::path::Path as File;
 
-use gimbal_gap::axis::{AxisDiagnosis, AxisLog, diagnose, text};
+use gimbal_gap::axis::{AxisDiagnosis, AxisLog, diagnose, json, text};
 use gimbal_model_file::AxisModel;
 
 use crate::simulator::{MODEL, Path, Truth, log};
@@ -11,63 +11,146 @@ fn model() -> AxisModel {
     AxisModel::parse(MODEL, "axis.toml").expect("reads").expect("an axis")
 }
 
+fn read(text: &str) -> AxisLog {
+    AxisLog::read(text.as_bytes(), File::new("simulated.csv"), &model()).expect("reads")
+}
+
 fn diagnosed(truth: &Truth, path: Path, seed: u64) -> AxisDiagnosis {
-    let log = log(truth, path, 24.0, seed);
-    let log = AxisLog::read(log.as_bytes(), File::new("simulated.csv"), &model()).expect("reads");
-    diagnose(log, &model(), Vec::new())
+    diagnose(read(&log(truth, path, 24.0, seed)), &model(), Vec::new())
 }
 
 fn names(diagnosis: &AxisDiagnosis) -> Vec<&str> {
     diagnosis.found.iter().map(|found| found.effect.as_str()).collect()
 }
 
+/// Value of the first parameter of an effect.
+fn value(diagnosis: &AxisDiagnosis, effect: &str) -> f64 {
+    let found = diagnosis.found.iter().find(|found| found.effect == effect);
+    let found = found.unwrap_or_else(|| panic!("{effect} not in {:?}", names(diagnosis)));
+    found.parameters[0].value
+}
+
 #[test]
-#[ignore = "a survey for the eye"]
-fn survey() {
-    let n = Truth::nominal;
-    let cases: Vec<(&str, Truth)> = vec![
-        ("none", n()),
-        ("tolerated", Truth { inertia: 81.5, viscous: 148.0, coulomb: 27.0, ..n() }),
-        ("inertia", Truth { inertia: 95.0, ..n() }),
-        ("viscous", Truth { viscous: 210.0, ..n() }),
-        ("coulomb", Truth { coulomb: 38.0, ..n() }),
-        ("stribeck", Truth { static_excess: 12.0, ..n() }),
-        ("presliding", Truth { bristle: 3e-4, ..n() }),
-        ("asymmetry", Truth { asymmetry: 0.2, ..n() }),
-        ("drag", Truth { drag: 200.0, ..n() }),
-        ("warming", Truth { warming: (0.4, 6.0), ..n() }),
-        ("constant", Truth { constant: 6.0, ..n() }),
-        ("ripple", Truth { ripple: vec![(400.0, 5.0, 0.4)], ..n() }),
-        ("motor_ripple", Truth { motor_ripple: vec![(300.0, 0.1, 0.4)], ..n() }),
-        ("spring", Truth { spring: 80.0, ..n() }),
-        ("dead_zone", Truth { dead_zone: 8.0, ..n() }),
-        ("delay", Truth { delay_rows: 4, ..n() }),
-        ("load", Truth { load_per_code: 10.0, ..n() }),
-        ("gain", Truth { gain: 1.2, ..n() }),
-        (
-            "stribeck+ripple+constant",
-            Truth { static_excess: 10.0, ripple: vec![(400.0, 6.0, 0.4)], constant: -5.0, ..n() },
-        ),
-        ("velocity x2", Truth { velocity_factor: 2.0, ..n() }),
-        ("position x2", Truth { position_factor: 2.0, ..n() }),
-        ("effort -1", Truth { effort_factor: -1.0, ..n() }),
-    ];
-    let only = std::env::var("ONLY").unwrap_or_default();
-    for (name, truth) in cases.iter().filter(|case| case.0.contains(&only)) {
-        for path in [Path::Strokes, Path::Sines] {
-            let start = std::time::Instant::now();
-            let diagnosis = diagnosed(truth, path, 5);
-            let brief: Vec<String> = text(&diagnosis)
-                .lines()
-                .take_while(|l| !l.starts_with("Columns") || !only.is_empty())
-                .map(str::to_owned)
-                .collect();
-            println!(
-                "=== {name} {path:?} {:.1} s {:?}\n{}",
-                start.elapsed().as_secs_f64(),
-                names(&diagnosis),
-                brief.join("\n")
-            );
-        }
+fn cross_an_axis_within_tolerance_has_no_gap() {
+    for seed in 0..4 {
+        let spread = f64::from(i32::try_from(seed).expect("small") - 2) * 0.01;
+        let truth = Truth {
+            inertia: 80.0 * (1.0 + spread),
+            viscous: 150.0 * (1.0 - spread),
+            coulomb: 25.0 * (1.0 + 3.0 * spread),
+            ..Truth::nominal()
+        };
+        let diagnosis = diagnosed(&truth, Path::Sines, seed);
+        assert_eq!(diagnosis.verdict.name(), "no_gap", "{}", text(&diagnosis));
     }
+}
+
+#[test]
+fn cross_single_effects_are_named_with_their_size() {
+    let n = Truth::nominal;
+    let cases = [
+        ("inertia", 95.0, 0.01, Truth { inertia: 95.0, ..n() }),
+        ("viscous_friction", 210.0, 0.02, Truth { viscous: 210.0, ..n() }),
+        ("friction_level", 38.0, 0.02, Truth { coulomb: 38.0, ..n() }),
+        ("presliding", 25.0, 0.05, Truth { bristle: 3e-4, ..n() }),
+        ("quadratic_drag", 200.0, 0.1, Truth { drag: 200.0, ..n() }),
+        ("friction_drift", -10.0, 0.05, Truth { warming: (0.4, 6.0), ..n() }),
+        ("torque_ripple", 5.0, 0.05, Truth { ripple: vec![(400.0, 5.0, 0.4)], ..n() }),
+        ("motor_ripple", 0.1, 0.05, Truth { motor_ripple: vec![(300.0, 0.1, 0.4)], ..n() }),
+        ("dead_zone", 8.0, 0.05, Truth { dead_zone: 8.0, ..n() }),
+        ("motor_lag", 4e-3, 0.1, Truth { delay_rows: 4, ..n() }),
+        ("external_load:code", 10.0, 0.01, Truth { load_per_code: 10.0, ..n() }),
+        ("torque_scale", 1.0 / 1.2 - 1.0, 0.02, Truth { gain: 1.2, ..n() }),
+    ];
+    for (effect, size, tolerance, truth) in cases {
+        let diagnosis = diagnosed(&truth, Path::Sines, 5);
+        let found = value(&diagnosis, effect);
+        assert!((found / size - 1.0).abs() < tolerance, "{effect}: {found} for {size}\n{}", text(&diagnosis));
+        assert_eq!(diagnosis.found.iter().find(|f| f.shows_in == "effort").expect("one").effect, effect);
+        let shrunk = &diagnosis.shrunk[0];
+        assert!(shrunk.reduction_percent > 80.0 && shrunk.ci95_percent[0] > 0.0, "{effect}\n{}", text(&diagnosis));
+    }
+}
+
+#[test]
+fn cross_an_offset_and_an_asymmetry_are_told_as_each_other() {
+    let n = Truth::nominal;
+    for truth in [Truth { constant: 6.0, ..n() }, Truth { asymmetry: 0.24, ..n() }] {
+        let diagnosis = diagnosed(&truth, Path::Sines, 5);
+        let class = ["constant_torque", "direction_asymmetry"];
+        let first = diagnosis.found.first().expect("one");
+        assert!(class.contains(&first.effect.as_str()), "{}", text(&diagnosis));
+        assert!((first.parameters[0].value - 6.0).abs() < 0.3, "{}", text(&diagnosis));
+    }
+}
+
+#[test]
+fn cross_wrong_columns_are_told_in_words_and_do_not_become_effects() {
+    let n = Truth::nominal;
+    let cases = [
+        ("velocity_scale", 2.0, Truth { velocity_factor: 2.0, ..n() }),
+        ("velocity_scale", std::f64::consts::TAU, Truth { velocity_factor: std::f64::consts::TAU, ..n() }),
+        ("position_scale", 2.0, Truth { position_factor: 2.0, ..n() }),
+        ("torque_sign", -1.0, Truth { effort_factor: -1.0, ..n() }),
+    ];
+    for (effect, size, truth) in cases {
+        let diagnosis = diagnosed(&truth, Path::Sines, 5);
+        let found = value(&diagnosis, effect);
+        assert!((found / size - 1.0).abs() < 0.03, "{effect}: {found}");
+        let others: Vec<&str> = names(&diagnosis).into_iter().filter(|name| *name != effect).collect();
+        assert!(
+            !others.iter().any(|name| ["inertia", "viscous_friction", "torque_scale"].contains(name)),
+            "{others:?}"
+        );
+    }
+}
+
+#[test]
+fn contract_the_verdict_hangs_on_neither_order_nor_origin_nor_spare_columns() {
+    let truth = Truth { static_excess: 12.0, constant: 5.0, ripple: vec![(400.0, 6.0, 0.4)], ..Truth::nominal() };
+    let text = log(&truth, Path::Sines, 24.0, 3);
+    let as_is = diagnose(read(&text), &model(), Vec::new());
+    let mut shuffled = String::from("spare,f,code,v,x,t\n");
+    for line in text.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let time: f64 = cells[0].parse().expect("a number");
+        shuffled.push_str(&format!("7,{},{},{},{},{:.4}\n", cells[3], cells[4], cells[2], cells[1], time + 100.0));
+    }
+    let other = diagnose(read(&shuffled), &model(), Vec::new());
+    assert_eq!(names(&as_is), names(&other));
+    let without: String = text.lines().map(|line| line.rsplit_once(',').expect("cells").0.to_owned() + "\n").collect();
+    assert_eq!(names(&as_is), names(&diagnose(read(&without), &model(), Vec::new())));
+}
+
+#[test]
+fn contract_the_report_keeps_the_schema() {
+    let truth = Truth { coulomb: 38.0, ..Truth::nominal() };
+    let unseen = vec![("other.csv".to_owned(), read(&log(&truth, Path::Strokes, 24.0, 9)))];
+    let diagnosis = diagnose(read(&log(&truth, Path::Sines, 24.0, 3)), &model(), unseen);
+    let report = json(&diagnosis, "a.csv", "axis.toml");
+    assert_eq!(report["schema"], "gimbal-gap/1");
+    for key in ["log", "model", "verdict", "where", "effects", "unknown_probability", "alternatives", "shrink", "notes"]
+    {
+        assert!(!report[key].is_null(), "{key}");
+    }
+    for key in ["blocks", "signals", "spans", "regimes", "bands"] {
+        assert!(report["where"][key].is_array(), "{key}");
+    }
+    let sum: f64 =
+        report["ranking"].as_array().expect("sets").iter().filter_map(|set| set["probability"].as_f64()).sum();
+    let unknown = report["unknown_probability"].as_f64().expect("a number");
+    assert!((sum + unknown - 1.0).abs() < 0.05, "{sum} + {unknown}");
+    let signals = report["shrink"]["signals"].as_array().expect("signals");
+    assert_eq!(signals[1]["name"], "effort of other.csv, not fitted");
+    assert!(signals[1]["reduction_percent"].as_f64().expect("a number") > 80.0, "{}", signals[1]);
+}
+
+#[test]
+fn contract_a_bad_cell_is_told_with_its_place() {
+    let text = log(&Truth::nominal(), Path::Sines, 1.0, 1).replacen("0.0030,", "0.0030,x", 1);
+    let error = AxisLog::read(text.as_bytes(), File::new("bad.csv"), &model()).expect_err("wrong").to_string();
+    assert!(error.starts_with("bad.csv: line 5, column `x`:"), "{error}");
+    let text = text.replacen("t,x,v,f,code", "t,x,v,force,code", 1);
+    let error = AxisLog::read(text.as_bytes(), File::new("bad.csv"), &model()).expect_err("wrong").to_string();
+    assert!(error.contains("no column `f`") && error.contains("force"), "{error}");
 }
