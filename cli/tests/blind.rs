@@ -71,9 +71,14 @@ fn contract_a_corpus_is_forged_diagnosed_and_scored_once() {
 #[test]
 fn contract_a_key_inside_its_corpus_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
-    let refused = gimbal(&["blind", "forge", "corpus", "--key", "corpus/key", "--logs", "1"], folder.path());
+    let refused =
+        gimbal(&["blind", "forge", "corpus", "--key", "corpus/key", "--seed", "1", "--logs", "1"], folder.path());
     assert_eq!(refused.status.code(), Some(2));
     assert!(said(&refused).contains("outside the corpus"), "{}", said(&refused));
+    // a seed from nowhere is none: neither on record, nor known, nor for development
+    let refused = gimbal(&["blind", "forge", "corpus", "--key", "key", "--logs", "1"], folder.path());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said(&refused).contains("--freeze"), "{}", said(&refused));
 }
 
 /// Runs git in a folder, as somebody.
