@@ -19,6 +19,13 @@ struct Board {
     counter: Counter,
     watchdog: Option<Peripheral>,
     uart: Option<Peripheral>,
+    sensor: Option<Sensor>,
+}
+
+#[derive(Deserialize)]
+struct Sensor {
+    address: u32,
+    interrupt: u16,
 }
 
 #[derive(Deserialize)]
@@ -45,12 +52,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = PathBuf::from(env::var("OUT_DIR")?);
     write_vectors(&out)?;
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
-        return write_constants(&out, "host", 1_000_000, [None; 2], u32::MAX);
+        return write_constants(&out, "host", 1_000_000, [None; 2], None, u32::MAX);
     }
     let target = env::var("TARGET")?;
     let (name, board) = choose(&target)?;
     let peripherals = [board.watchdog.as_ref(), board.uart.as_ref()];
-    write_constants(&out, &name, board.counter.hz, peripherals, board.ram.length_bytes)?;
+    write_constants(&out, &name, board.counter.hz, peripherals, board.sensor.as_ref(), board.ram.length_bytes)?;
     link(&out, &target, &board)
 }
 
@@ -78,10 +85,13 @@ fn write_constants(
     name: &str,
     counter_hz: u32,
     peripherals: [Option<&Peripheral>; 2],
+    sensor: Option<&Sensor>,
     ram_bytes: u32,
 ) -> Result<(), Box<dyn Error>> {
     let ram_bytes = thousands(ram_bytes);
     let counter_hz = thousands(counter_hz);
+    let sensor = sensor
+        .map_or("None".into(), |Sensor { address, interrupt }| format!("Some(({}, {interrupt}))", grouped(*address)));
     let [watchdog, uart] = peripherals.map(|peripheral| {
         peripheral.map_or("None".into(), |peripheral| format!("Some({})", grouped(peripheral.address)))
     });
@@ -90,6 +100,8 @@ fn write_constants(
          /// Rate of the instruction counter in virtual time [1/s].\npub const COUNTER_HZ: u32 = {counter_hz};\n\
          /// Base address of the CMSDK watchdog, if the board has one.\npub const WATCHDOG: Option<u32> = {watchdog};\n\
          /// Base address of the CMSDK UART, if the board has one.\npub const UART: Option<u32> = {uart};\n\
+         /// Base address and interrupt of the PL022 port that the sensor sits on, if the board has one.\n\
+         pub const SENSOR: Option<(u32, u16)> = {sensor};\n\
          /// Memory for data and stack [bytes].\npub const RAM_BYTES: u32 = {ram_bytes};\n"
     );
     Ok(fs::write(out.join("board.rs"), text)?)

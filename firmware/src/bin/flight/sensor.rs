@@ -1,29 +1,34 @@
 //! The receive interrupt: a row has come in, and waits in a queue for the next tick.
 //!
-//! On a board of yours this is the interrupt of the serial port or bus that the sensor sits on. Here the tick pends the
-//! interrupt, as a sensor that is triggered answers, and the row comes from the committed flight.
+//! The sensor answers on a synchronous serial port, the `PL022` (Arm DDI 0194), where the board file names one:
+//! eight words of 16 bits make a row, the port's whole FIFO, and half of them raise its receive interrupt. The sensor
+//! itself is played by the port's own loopback: the tick sends the eight words that an asked sensor would send. On a
+//! board of yours loopback is off, and the tick sends what makes the sensor answer. Boards without such a port pend
+//! interrupt 0 instead, and the words stay in memory.
 
-// An interrupt's number is a promise to the hardware, and enabling one is too.
+// An interrupt's number is a promise to the hardware, enabling one is too, and registers of a peripheral are addresses.
 #![allow(unsafe_code)]
 
 use crate::target::Axis;
 use core::cell::RefCell;
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 use cortex_m_rt::exception;
 use critical_section::Mutex;
+use gimbal_firmware::board;
 use gimbal_firmware::cases::MINUTE;
-use gimbal_servo::{Input, Law};
+use gimbal_servo::{Input, Law, Number};
 use heapless::spsc::Producer;
 
-/// The first interrupt of the board.
+/// The port's receive interrupt, or the first one.
 #[derive(Clone, Copy)]
 pub(crate) struct Receive;
 
-// SAFETY: every core has an interrupt 0.
+// SAFETY: the board's file gives the number; every core has an interrupt 0.
 unsafe impl InterruptNumber for Receive {
     fn number(self) -> u16 {
-        0
+        board::SENSOR.map_or(0, |(_, interrupt)| interrupt)
     }
 }
 
@@ -32,23 +37,53 @@ struct Sensor {
     law: &'static Law<Axis>,
     rows: Producer<'static, Input<Axis>>,
     next: u32,
+    /// What has come in of the row, in halves of its signals, and how many.
+    words: [u16; WORDS],
+    received: usize,
 }
+
+/// Of 16 bits, a row's.
+const WORDS: usize = 8;
 
 static SENSOR: Mutex<RefCell<Option<Sensor>>> = Mutex::new(RefCell::new(None));
 
+/// The sensor's next answer: acceleration along x, y and z, and the rate, as the law's signals. Written by the interrupt,
+/// sent by the tick.
+static ANSWER: [AtomicU32; 4] = [const { AtomicU32::new(0) }; 4];
+
 /// Hands the interrupt its end of the queue and enables it.
 pub(crate) fn start(law: &'static Law<Axis>, rows: Producer<'static, Input<Axis>>) {
-    critical_section::with(|cs| SENSOR.replace(cs, Some(Sensor { law, rows, next: 0 })));
+    Sensor::answer(law, 0);
+    critical_section::with(|cs| {
+        SENSOR.replace(cs, Some(Sensor { law, rows, next: 0, words: [0; WORDS], received: 0 }))
+    });
+    port::start();
     // SAFETY: no critical section relies on the interrupt being masked.
     unsafe { NVIC::unmask(Receive) };
 }
 
 /// Asks the sensor for a row.
 pub(crate) fn trigger() {
-    NVIC::pend(Receive);
+    for word in answer() {
+        port::send(word);
+    }
+    if board::SENSOR.is_none() {
+        NVIC::pend(Receive);
+    }
 }
 
-/// The interrupts' handler; 0 is the only one enabled.
+/// The sensor's answer as it goes over the port: of each signal the lower half first.
+fn answer() -> [u16; WORDS] {
+    let [x, y, z, rate] = ANSWER.each_ref().map(|signal| halves(signal.load(Relaxed)));
+    [x[0], x[1], y[0], y[1], z[0], z[1], rate[0], rate[1]]
+}
+
+fn halves(bits: u32) -> [u16; 2] {
+    let [a, b, c, d] = bits.to_le_bytes();
+    [u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d])]
+}
+
+/// The interrupts' handler; the sensor's is the only one enabled.
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {
     // Taken out and put back, so that the tick waits for neither the row nor the queue.
@@ -58,13 +93,87 @@ unsafe fn DefaultHandler(_number: i16) {
 }
 
 impl Sensor {
+    /// Takes what has come in; the interrupt comes with half a row, and again with the other half.
     fn receive(&mut self) {
-        // A full queue means that the ticks have stopped; the row waits, and the tick will find one missing.
-        if self.next < MINUTE.steps && self.rows.ready() {
-            let row = MINUTE.input(self.law, self.next);
-            if self.rows.enqueue(row).is_ok() {
-                self.next += 1;
-            }
+        if board::SENSOR.is_none() {
+            (self.words, self.received) = (answer(), WORDS);
         }
+        while self.received < WORDS {
+            let Some(word) = port::receive() else { return };
+            self.words[self.received] = word;
+            self.received += 1;
+        }
+        self.received = 0;
+        let [x0, x1, y0, y1, z0, z1, rate0, rate1] = self.words;
+        let signal = |low: u16, high: u16| <Axis as Number>::from_bits(u32::from(low) | u32::from(high) << 16);
+        let row = Input {
+            accel_x_mps2: signal(x0, x1),
+            accel_y_mps2: signal(y0, y1),
+            accel_z_mps2: signal(z0, z1),
+            vehicle_rate_radps: signal(rate0, rate1),
+            ..Input::default()
+        };
+        // A full queue means that the ticks have stopped; the row is lost, and the tick will find one missing.
+        if self.next < MINUTE.steps && self.rows.enqueue(row).is_ok() {
+            self.next += 1;
+            Self::answer(self.law, self.next);
+        }
+    }
+
+    /// Prepares row `k` of the committed flight.
+    fn answer(law: &Law<Axis>, k: u32) {
+        let row = MINUTE.input(law, k);
+        let signals = [row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2, row.vehicle_rate_radps];
+        for (answer, signal) in ANSWER.iter().zip(signals) {
+            answer.store(Number::to_bits(signal), Relaxed);
+        }
+    }
+}
+
+/// Registers of the PL022.
+mod port {
+    use gimbal_firmware::board;
+
+    const CONTROL_0: u32 = 0x000;
+    const CONTROL_1: u32 = 0x004;
+    const DATA: u32 = 0x008;
+    const STATUS: u32 = 0x00C;
+    const PRESCALE: u32 = 0x010;
+    const INTERRUPTS: u32 = 0x014;
+    /// Words of 16 bits.
+    const SIXTEEN_BITS: u32 = 15;
+    const LOOPBACK: u32 = 1;
+    const ENABLE: u32 = 1 << 1;
+    /// The receive FIFO is not empty.
+    const RECEIVED: u32 = 1 << 2;
+    /// The receive FIFO is half full or more.
+    const RECEIVE_INTERRUPT: u32 = 1 << 2;
+
+    pub(super) fn start() {
+        write(PRESCALE, 2);
+        write(CONTROL_0, SIXTEEN_BITS);
+        write(CONTROL_1, LOOPBACK | ENABLE);
+        write(INTERRUPTS, RECEIVE_INTERRUPT);
+    }
+
+    pub(super) fn send(word: u16) {
+        write(DATA, word.into());
+    }
+
+    /// A word that has come in.
+    pub(super) fn receive() -> Option<u16> {
+        if read(STATUS)? & RECEIVED == 0 { None } else { u16::try_from(read(DATA)? & 0xFFFF).ok() }
+    }
+
+    fn write(register: u32, value: u32) {
+        if let Some((base, _)) = board::SENSOR {
+            // SAFETY: the board's file gives the address of this peripheral, and nothing else uses it.
+            unsafe { ((base + register) as *mut u32).write_volatile(value) };
+        }
+    }
+
+    fn read(register: u32) -> Option<u32> {
+        // SAFETY: as above.
+        board::SENSOR.map(|(base, _)| unsafe { ((base + register) as *const u32).read_volatile() })
     }
 }
