@@ -5,7 +5,7 @@ use gimbal_model_file::AxisModel;
 use super::library::{NOMINAL, Shape, rms, shapes};
 use super::motion::Motion;
 use super::regress::Grams;
-use super::search::{Candidate, Problem, Set};
+use super::search::{Candidate, LEAST_SHARE, Problem, Set};
 
 /// Numbers of waves that are kept from the search, for each kind of ripple.
 const KEPT_WAVES: usize = 12;
@@ -115,8 +115,15 @@ impl Balance {
         set_priors(&mut grams, model, rest, &motion, 0);
         let floor_square = motion.floor.powi(2) * target.len() as f64;
         let effort_square = effort.iter().map(|u| u * u).sum();
-        let problem =
-            Problem { base: vec![0, 1, 2], candidates, grams, floor_square, effort_square, nominal: Some(parameters) };
+        let problem = Problem {
+            base: vec![0, 1, 2],
+            candidates,
+            grams,
+            floor_square,
+            effort_square,
+            least_share: LEAST_SHARE,
+            nominal: Some(parameters),
+        };
         Self { motion, target, effort, columns, problem, hidden }
     }
 

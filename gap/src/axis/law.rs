@@ -140,6 +140,8 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         grams,
         floor_square: floor.powi(2) * rows as f64,
         effort_square: given.iter().map(|u| u * u).sum(),
+        // a load hides nothing here: what it leaves is as well known as it is
+        least_share: 0.0,
         nominal: None,
     };
     let mut problem = problem;

@@ -23,6 +23,8 @@ pub(super) struct Problem {
     pub(super) floor_square: f64,
     /// Squared effort over all rows, and the nominal friction.
     pub(super) effort_square: f64,
+    /// Share of the gap that an effect must take.
+    pub(super) least_share: f64,
     /// Nominal parameters, where the base columns are they.
     pub(super) nominal: Option<[f64; 3]>,
 }
@@ -156,7 +158,7 @@ impl Problem {
             .sum::<f64>()
             / (filled - 1.0);
         let error = (spread / filled).sqrt();
-        let least = (LEAST_SHARE * gap)
+        let least = (self.least_share * gap)
             .max(LEAST_OF_REST * rest)
             .max(LEAST_OF_EFFORT * self.effort_square)
             .max(LEAST_OF_FLOOR * self.floor_square);

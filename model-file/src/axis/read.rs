@@ -81,7 +81,7 @@ impl AxisModel {
         if self.band_hz.is_some_and(|band| !(band > 0.0 && band.is_finite())) {
             return wrong("band_hz", "must be above zero".to_owned());
         }
-        if self.load_direction.abs() != 1.0 {
+        if ![1.0, -1.0].contains(&self.load_direction) {
             return wrong("load_direction", format!("is {}; write 1 or -1", self.load_direction));
         }
         let columns = &self.columns;

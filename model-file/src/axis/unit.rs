@@ -71,9 +71,12 @@ impl Quantity {
             return Ok(1.0);
         }
         let known = || units.iter().map(|(name, _)| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
-        units.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size).ok_or_else(|| match units.is_empty() {
-            true => format!("write \"{effort_unit}\", the axis' own `effort_unit`, and a `scale` beside it"),
-            false => format!("write one of {} (and a `scale` where none of them fits)", known()),
+        units.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size).ok_or_else(|| {
+            if units.is_empty() {
+                format!("write \"{effort_unit}\", the axis' own `effort_unit`, and a `scale` beside it")
+            } else {
+                format!("write one of {} (and a `scale` where none of them fits)", known())
+            }
         })
     }
 }
