@@ -110,8 +110,10 @@ impl<N: Number> Law<N> {
         let forces = resolver.forces(self.order, input.accel_mps2);
         let rates = resolver.bearing_rates(self.order, input.vehicle_rate_radps, self.least_cosine);
         // The stable member's own rate, of the last row.
-        let own: [N; 3] =
-            core::array::from_fn(|axis| state.axes[axis].gimbal_rate.shift_down(self.axes[axis].rate_shift));
+        let own: [N; 3] = core::array::from_fn(|axis| {
+            let last = &state.axes[axis];
+            (last.sensed_rate - last.drift).shift_down(self.axes[axis].rate_shift)
+        });
         let mut rows = [signals::Input::default(); 3];
         for ((axis, force), rate) in self.order.into_iter().zip(forces).zip(rates) {
             let (x, y) = across(axis);
