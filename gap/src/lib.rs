@@ -6,6 +6,14 @@
 
 #![forbid(unsafe_code)]
 
+#[allow(
+    clippy::type_complexity,
+    clippy::too_many_lines,
+    clippy::match_same_arms,
+    clippy::format_collect,
+    clippy::needless_pass_by_value,
+    reason = "lists of regimes and columns, each told in its order"
+)]
 pub mod axis;
 pub mod diagnose;
 pub mod fit;

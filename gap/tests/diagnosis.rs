@@ -83,7 +83,9 @@ fn the_report_keeps_its_schema() {
         ("alternatives", &["effects", "probability", "told_apart_by"][..]),
     ] {
         for entry in report[list].as_array().expect(list) {
-            keys.iter().for_each(|key| assert!(!entry[*key].is_null(), "{list}.{key}"));
+            for key in keys {
+                assert!(!entry[*key].is_null(), "{list}.{key}");
+            }
         }
     }
     for entry in report["shrink"]["signals"].as_array().expect("signals") {

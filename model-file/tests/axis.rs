@@ -1,5 +1,7 @@
 //! `[axis]`: what reads, and how a mistake is told.
 
+#![allow(clippy::float_cmp, reason = "values are read as they are written")]
+
 use gimbal_model_file::AxisModel;
 use gimbal_model_file::axis::Quantity;
 

@@ -277,7 +277,7 @@ fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<Shape> {
         }
         let mut found: Vec<(f64, f64)> = {
             use rayon::prelude::*;
-            let carried: Vec<f64> = (0..q.len()).map(|i| carrier(i)).collect();
+            let carried: Vec<f64> = (0..q.len()).map(carrier).collect();
             let sigma_s = motion.period_s * motion.whole_sigma();
             numbers
                 .par_iter()

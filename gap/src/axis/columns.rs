@@ -322,10 +322,10 @@ fn others(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
         let mut longest = 0;
         let mut run = 0;
         for pair in values.windows(2) {
-            run = if pair[0] == pair[1] { run + 1 } else { 0 };
+            run = if pair[0].to_bits() == pair[1].to_bits() { run + 1 } else { 0 };
             longest = longest.max(run);
         }
-        let length_s = longest as f64 * log.period_s;
+        let length_s = f64::from(longest) * log.period_s;
         if length_s > 0.2 {
             checked.words.push(format!("`{}` does not change for {length_s:.2} s: at rest, or stuck", source.name));
         }

@@ -250,20 +250,17 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
         found.push(Found { effect, block: shape.block(), probability, parameters, removes, shows_in: "effort" });
     }
     for shape in &outside {
-        let parameters = match indices(shape)[..] {
-            [index] => {
-                let samples: Vec<Vec<f64>> = shifted.iter().map(|s| vec![s[index]]).collect();
-                parameters(shape, &[shifts[index]], &samples, model, &balance.motion)
-            }
-            _ => {
-                let base = nominal(model);
-                let known: Vec<usize> = (0..3).filter(|&i| base[i] > 0.0).collect();
-                let weight = |i: usize| (base[i] / errors[i].max(1e-6 * base[i])).powi(2);
-                let weights: f64 = known.iter().map(|&i| weight(i)).sum();
-                let mean = |s: &[f64]| known.iter().map(|&i| weight(i) * s[i] / base[i]).sum::<f64>() / weights;
-                let samples: Vec<Vec<f64>> = shifted.iter().map(|s| vec![mean(s)]).collect();
-                parameters(shape, &[mean(&shifts)], &samples, model, &balance.motion)
-            }
+        let parameters = if let [index] = indices(shape)[..] {
+            let samples: Vec<Vec<f64>> = shifted.iter().map(|s| vec![s[index]]).collect();
+            parameters(shape, &[shifts[index]], &samples, model, &balance.motion)
+        } else {
+            let base = nominal(model);
+            let known: Vec<usize> = (0..3).filter(|&i| base[i] > 0.0).collect();
+            let weight = |i: usize| (base[i] / errors[i].max(1e-6 * base[i])).powi(2);
+            let weights: f64 = known.iter().map(|&i| weight(i)).sum();
+            let mean = |s: &[f64]| known.iter().map(|&i| weight(i) * s[i] / base[i]).sum::<f64>() / weights;
+            let samples: Vec<Vec<f64>> = shifted.iter().map(|s| vec![mean(s)]).collect();
+            parameters(shape, &[mean(&shifts)], &samples, model, &balance.motion)
         };
         let effect = shape.effect().to_owned();
         let (probability, removes) = (marginal(&effect), of_shift(&indices(shape)) / all * gone);

@@ -141,16 +141,11 @@ impl Motion {
         let sigma = HALF_POWER / band_hz * rate_hz;
         let rest = Kernel::new(sigma, 0, period_s);
         let whole = Kernel::new(sigma * 2.0_f64.sqrt(), 0, period_s);
-        let (q, v, a) = match (from, &log.velocity) {
-            (MotionFrom::Velocity, Some(velocity)) => (
-                position,
-                Kernel::new(sigma, 0, period_s).apply(velocity),
-                Kernel::new(sigma, 1, period_s).apply(velocity),
-            ),
-            _ => {
-                let of = |order| Kernel::new(sigma, order, period_s).apply(&position);
-                (of(0), of(1), of(2))
-            }
+        let (q, v, a) = if let (MotionFrom::Velocity, Some(velocity)) = (from, &log.velocity) {
+            (position, Kernel::new(sigma, 0, period_s).apply(velocity), Kernel::new(sigma, 1, period_s).apply(velocity))
+        } else {
+            let of = |order| Kernel::new(sigma, order, period_s).apply(&position);
+            (of(0), of(1), of(2))
         };
         let rate_noise = match from {
             MotionFrom::Position => position_noise * Kernel::new(sigma, 1, period_s).noise_gain(),

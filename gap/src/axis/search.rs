@@ -68,7 +68,9 @@ impl Problem {
         let possible = members.is_empty() || self.possible(&members, &columns);
         let mut held_out = self.grams.held_out(&columns);
         if !possible {
-            held_out.iter_mut().for_each(|square| *square = 1e3 * (*square + self.effort_square));
+            for square in &mut held_out {
+                *square = 1e3 * (*square + self.effort_square);
+            }
         }
         Set { members, held_out }
     }
@@ -181,13 +183,12 @@ impl Problem {
         let mut few = Vec::new();
         for single in &singles {
             let kind = self.candidates[single.members[0]].shape.effect();
-            let seen = match kinds.iter_mut().find(|(name, _)| *name == kind) {
-                Some((_, seen)) => seen,
-                None => {
-                    kinds.push((kind, 0));
-                    let last = kinds.len() - 1;
-                    &mut kinds[last].1
-                }
+            let seen = if let Some((_, seen)) = kinds.iter_mut().find(|(name, _)| *name == kind) {
+                seen
+            } else {
+                kinds.push((kind, 0));
+                let last = kinds.len() - 1;
+                &mut kinds[last].1
             };
             *seen += 1;
             if *seen <= 3 && few.len() < PAIRED {

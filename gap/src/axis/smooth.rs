@@ -28,19 +28,27 @@ impl Kernel {
         match order {
             0 => {
                 let sum = moment(&taps, 0);
-                taps.iter_mut().for_each(|tap| *tap /= sum);
+                for tap in &mut taps {
+                    *tap /= sum;
+                }
             }
             1 => {
                 taps.iter_mut().zip(&lags).for_each(|(tap, lag)| *tap *= lag);
                 let scale = moment(&taps, 1) * period_s;
-                taps.iter_mut().for_each(|tap| *tap /= scale);
+                for tap in &mut taps {
+                    *tap /= scale;
+                }
             }
             _ => {
                 taps.iter_mut().zip(&lags).for_each(|(tap, lag)| *tap *= (lag / sigma_rows).powi(2) - 1.0);
                 let mean = moment(&taps, 0) / taps.len() as f64;
-                taps.iter_mut().for_each(|tap| *tap -= mean);
+                for tap in &mut taps {
+                    *tap -= mean;
+                }
                 let scale = moment(&taps, 2) * 0.5 * period_s * period_s;
-                taps.iter_mut().for_each(|tap| *tap /= scale);
+                for tap in &mut taps {
+                    *tap /= scale;
+                }
             }
         }
         Self { taps }

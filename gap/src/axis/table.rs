@@ -190,7 +190,8 @@ impl AxisLog {
             }
         }
         log.even(&time).map_err(content)?;
-        let constant = |values: &[f64]| values.iter().filter(|v| v.is_finite()).all(|v| v == &values[0]);
+        let constant =
+            |values: &[f64]| values.iter().filter(|v| v.is_finite()).all(|v| v.to_bits() == values[0].to_bits());
         log.auxiliary.retain(|(name, values)| {
             if constant(values) {
                 log.notes.push(format!("{name} never changes in this file"));

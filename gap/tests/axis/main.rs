@@ -1,5 +1,12 @@
 //! Plain axes: effects that an independent simulation has are found, those that it has not are not.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::format_push_string,
+    reason = "strokes are counted, rows are written line by line"
+)]
+
 mod real;
 mod simulated;
 mod simulator;

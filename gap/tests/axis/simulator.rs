@@ -1,4 +1,4 @@
-//! A servo axis of another making: LuGre friction, a loop of its own, small steps. It shares nothing with the
+//! A servo axis of another making: `LuGre` friction, a loop of its own, small steps. It shares nothing with the
 //! diagnosis but the columns of its log.
 //!
 //! ```text
@@ -96,8 +96,8 @@ pub(crate) fn log(truth: &Truth, path: Path, length_s: f64, seed: u64) -> String
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
     let rows = (length_s / period) as usize;
     let mut held = vec![0.0; truth.delay_rows + 1];
-    let mut dice = ChaCha8Rng::seed_from_u64(seed ^ 77);
-    let phases: Vec<f64> = (0..6).map(|_| dice.random_range(0.0..6.28)).collect();
+    let mut dice = ChaCha8Rng::seed_from_u64(seed.wrapping_add(77));
+    let phases: Vec<f64> = (0..6).map(|_| dice.random_range(0.0..std::f64::consts::TAU)).collect();
     for k in 0..rows {
         let t = k as f64 * period;
         let reference = match path {
@@ -106,7 +106,7 @@ pub(crate) fn log(truth: &Truth, path: Path, length_s: f64, seed: u64) -> String
                 let share = ((t / 2.2 - stroke) * 1.25).min(1.0);
                 let smooth = share * share * share * (10.0 - 15.0 * share + 6.0 * share * share);
                 let length = [0.1, 0.2, 0.04, 0.15, 0.02, 0.22][stroke as usize % 6];
-                let up = (stroke as usize) % 2 == 0;
+                let up = (stroke as usize).is_multiple_of(2);
                 let previous = [0.1, 0.2, 0.04, 0.15, 0.02, 0.22][(stroke as usize + 5) % 6];
                 let _ = previous;
                 if up {
