@@ -47,15 +47,15 @@ typedef struct GimbalConfig {
   double bearing_pitch_diameter_m;
   // c of (6.1) [N m/N].
   double bearing_load_torque_nm_per_n;
-  // Exponent of F_s.
+  // Exponent of `F_s`.
   double bearing_load_exponent;
-  // Factor of F_a in F_s.
+  // Factor of `F_a` in `F_s`.
   double bearing_static_axial_factor;
-  // Factor of F_r in F_s.
+  // Factor of `F_r` in `F_s`.
   double bearing_static_radial_factor;
-  // Factor of F_a in (6.1).
+  // Factor of `F_a` in (6.1).
   double bearing_torque_axial_factor;
-  // Factor of F_r in (6.1).
+  // Factor of `F_r` in (6.1).
   double bearing_torque_radial_factor;
   // f0.
   double bearing_lubrication_factor;
@@ -63,11 +63,11 @@ typedef struct GimbalConfig {
   double bearing_viscosity_m2ps;
   // Viscous law: Harris's metric pair; false: the pair that the paper implies.
   bool bearing_viscous_metric;
-  // w_s [rad/s].
+  // `w_s` [rad/s].
   double bearing_slip_rate_radps;
-  // -m r_x [kg m].
+  // -m `r_x` [kg m].
   double unbalance_x_kg_m;
-  // -m r_y [kg m].
+  // -m `r_y` [kg m].
   double unbalance_y_kg_m;
   // Largest specific force along x and y [m/s2].
   double range_radial_accel_mps2;
@@ -117,7 +117,7 @@ typedef struct GimbalOutputFixed {
   int32_t gimbal_rate_radps;
   // theta [rad].
   int32_t gyro_angle_rad;
-  // T_m [N m].
+  // `T_m` [N m].
   int32_t motor_torque_nm;
   // Friction torque on the gimbal [N m].
   int32_t friction_torque_nm;
@@ -160,7 +160,7 @@ typedef struct GimbalOutputF32 {
   float gimbal_rate_radps;
   // theta [rad].
   float gyro_angle_rad;
-  // T_m [N m].
+  // `T_m` [N m].
   float motor_torque_nm;
   // Friction torque on the gimbal [N m].
   float friction_torque_nm;
