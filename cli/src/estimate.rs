@@ -20,7 +20,7 @@ use crate::{interrupt, plot, report};
 pub(crate) struct Args {
     /// Log with `gyro_angle_rad`
     log: PathBuf,
-    /// Model file; its [tolerance] makes the bound
+    /// Model file; its table of tolerances makes the bound
     #[arg(long, value_name = "FILE.toml")]
     model: Option<PathBuf>,
     /// Number system of the estimator

@@ -32,7 +32,7 @@ use trial::Case;
 /// At how many g does the platform saturate, and which part's tolerance decides that.
 #[derive(Debug, Parser)]
 pub(crate) struct Args {
-    /// Model file; its [tolerance] is what --monte-carlo draws from
+    /// Model file; its table of tolerances is what --monte-carlo draws from
     #[arg(long, value_name = "FILE.toml")]
     model: Option<PathBuf>,
     /// What disturbs the platform

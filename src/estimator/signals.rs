@@ -4,7 +4,7 @@ use super::flags::Flags;
 
 /// What the sensors of the axis read at this row; `None` where there is no reading.
 ///
-/// In the full scales that [`Law::measured`] gives. A reading that is not finite counts as none.
+/// In the full scales that [`super::Law::measured`] gives. A reading that is not finite counts as none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Measured<N> {
     /// theta [rad].

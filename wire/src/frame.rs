@@ -9,7 +9,7 @@
 //! | 8-39 | payload, by kind; unused bytes are zero |
 //! | 40-43 | CRC-32 of bytes 0-39 |
 //!
-//! The checksum is CRC-32/ISO-HDLC (IEEE 802.3). At this length it detects every error of up to five bits and every
+//! The checksum is CRC-32/ISO-HDLC (IEEE 802.3). At this length it detects every error of up to four bits and every
 //! burst of up to 32 bits; of all others it lets one in 2^32 pass (P. Koopman, *32-bit cyclic redundancy codes for
 //! Internet applications*, DSN 2002).
 

@@ -62,7 +62,7 @@ proptest! {
 }
 
 #[test]
-fn closed_form_every_error_of_up_to_five_bits_is_found() {
+fn closed_form_errors_of_a_few_bits_are_found() {
     // The distance of this CRC at 44 bytes is 6: below it every pattern is found. All pairs, and many of the others.
     let frame = Frame { sequence: 9, tick: 77, message: Message::Run(Run { watchdog_ticks: 20 }) };
     let body: [u8; BODY_LEN] =

@@ -18,9 +18,9 @@ pub(crate) fn check() -> Result<Note> {
             .cargo("clippy --quiet --release --package gimbal-firmware", target)
             .args(["--", "-D", "warnings"]))?;
         if target.starts_with("thumbv7em") {
-            let words = "clippy --quiet --release --package gimbal-firmware --bins --examples --features";
+            let words = "clippy --quiet --release --package gimbal-firmware --bins --examples";
             for features in ["defmt", "rtic", "embassy"] {
-                run(toolchain.cargo(words, target).args([features, "--", "-D", "warnings"]))?;
+                run(toolchain.cargo(words, target).args(["--features", features, "--", "-D", "warnings"]))?;
             }
         }
     }
