@@ -15,6 +15,8 @@ const DRAWS: usize = 200;
 const BEYOND: f64 = 1.15;
 /// Share of the gap that may be left over by what explains it.
 const LEFT: f64 = 0.03;
+/// Parameters shift by one factor when they do within this.
+const SAME_FACTOR: f64 = 0.05;
 /// Share of the gap that is a trifle.
 const TRIFLE: f64 = 0.01;
 /// A gap is one from this power over the floor on.
@@ -131,11 +133,16 @@ fn beyond(model: &AxisModel, shifts: [f64; 3], errors: [f64; 3]) -> Vec<Shape> {
     let base = nominal(model);
     let outside: Vec<usize> = (0..3).filter(|&index| !within(model, index, shifts[index], errors[index])).collect();
     let known: Vec<usize> = (0..3).filter(|&index| base[index] > 0.0).collect();
-    if known.len() > 1 && outside == known && !model.known_good.iter().any(|good| good == "torque_scale") {
+    if outside.len() > 1
+        && outside.iter().all(|index| known.contains(index))
+        && !model.known_good.iter().any(|good| good == "torque_scale")
+    {
         let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
         let factors: Vec<(f64, f64)> = known
             .iter()
-            .map(|&i| (shifts[i] / base[i], tolerance[i].powi(2) + (2.0 * errors[i] / base[i]).powi(2)))
+            .map(|&i| {
+                (shifts[i] / base[i], tolerance[i].min(SAME_FACTOR).powi(2) + (2.0 * errors[i] / base[i]).powi(2))
+            })
             .collect();
         let weight: f64 = factors.iter().map(|(_, variance)| 1.0 / variance).sum();
         let mean = factors.iter().map(|(factor, variance)| factor / variance).sum::<f64>() / weight;

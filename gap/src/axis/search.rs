@@ -39,6 +39,8 @@ const LEAST_OF_FLOOR: f64 = 0.1;
 const LEAST_T: f64 = 2.5;
 /// Effects at most; many kinds of ripple count each.
 const MOST: usize = 10;
+/// What an asymmetry must be better by than an offset.
+const ASYMMETRIC: f64 = 1.03;
 /// Candidates of which all pairs are tried.
 const PAIRED: usize = 48;
 
@@ -167,8 +169,14 @@ impl Problem {
         rest > 0.0 && gain > effects * least && mean > LEAST_T * error
     }
 
+    /// What sets are compared by: of an offset and an asymmetry that the log cannot tell apart, the offset.
+    fn key(&self, set: &Set) -> f64 {
+        let asymmetric = set.members.iter().any(|&member| self.candidates[member].shape == Shape::Asymmetry);
+        set.square() * if asymmetric { ASYMMETRIC } else { 1.0 }
+    }
+
     fn best_of(&self, sets: Vec<Vec<usize>>) -> Option<Set> {
-        sets.into_par_iter().map(|members| self.set(members)).min_by(|a, b| a.square().total_cmp(&b.square()))
+        sets.into_par_iter().map(|members| self.set(members)).min_by(|a, b| self.key(a).total_cmp(&self.key(b)))
     }
 
     fn extended(&self, set: &Set, all: &[usize]) -> Option<Set> {
@@ -210,7 +218,7 @@ impl Problem {
                 members
             });
             if let Some(other) = self.best_of(sets.collect())
-                && other.square() < best.square() * (1.0 - 1e-3)
+                && self.key(&other) < self.key(&best) * (1.0 - 1e-3)
             {
                 best = other;
             }
