@@ -11,8 +11,8 @@ use std::time::Instant;
 
 /// Where the score of the small corpus is committed.
 const COMMITTED: &str = "docs/blind/check/score.json";
-/// The corpus: 150 logs of 12 to 15 s; without the real flight, which is not part of the repository.
-const FORGE: &str = "--logs 150 --seconds 12 15 --seed 8 --rocket none";
+/// The corpus: 36 logs of 12 to 15 s; without the real flight, which is not part of the repository.
+const FORGE: &str = "--logs 36 --seconds 12 15 --seed 8 --rocket none";
 
 /// Forges, diagnoses and scores; the folder of the score.
 fn score(against: Option<&str>) -> Result<PathBuf> {
@@ -50,7 +50,7 @@ pub(crate) fn check() -> Result<Note> {
     let committed = crate::shell::root().join(COMMITTED).exists();
     score(committed.then_some(COMMITTED))?;
     let held = if committed { "no loss against" } else { "scored; nothing to hold it against without" };
-    Ok(format!("150 logs, {held} {COMMITTED}, {:.0} s", start.elapsed().as_secs_f64()))
+    Ok(format!("36 logs, {held} {COMMITTED}, {:.0} s", start.elapsed().as_secs_f64()))
 }
 
 /// Writes the committed score anew.
