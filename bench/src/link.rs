@@ -6,6 +6,7 @@ mod host;
 mod serial;
 mod stream;
 
+use std::io::{ErrorKind, Read};
 use std::time::Duration;
 
 #[cfg(unix)]
@@ -46,4 +47,19 @@ pub trait Link {
 
     /// What it is, for reports.
     fn describe(&self) -> String;
+}
+
+/// Appends what one read brings; a wait that ends without a byte brings none. False at the end of the stream.
+fn read_once(source: &mut impl Read, bytes: &mut Vec<u8>) -> std::io::Result<bool> {
+    let mut buffer = [0; 4096];
+    match source.read(&mut buffer) {
+        Ok(count) => {
+            bytes.extend_from_slice(&buffer[..count]);
+            Ok(count > 0)
+        }
+        Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {
+            Ok(true)
+        }
+        Err(error) => Err(error),
+    }
 }

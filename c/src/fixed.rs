@@ -1,5 +1,6 @@
 //! The axis in fixed point, for cores without an FPU.
 
+use crate::changed;
 use crate::config::GimbalConfig;
 use crate::message;
 use crate::signals::{GimbalInputF32, GimbalInputFixed, GimbalOutputF32, GimbalOutputFixed};
@@ -21,8 +22,9 @@ pub struct GimbalStateFixed {
     storage: [u8; crate::GIMBAL_STATE_BYTES],
 }
 
-storage!(GimbalLawFixed, Law<Fixed>, crate::GIMBAL_LAW_BYTES);
-storage!(GimbalStateFixed, State<Fixed>, crate::GIMBAL_STATE_BYTES);
+storage!(GimbalLawFixed, Law<Fixed>);
+storage!(GimbalStateFixed, State<Fixed>);
+changed!(GimbalStateFixed, State<Fixed>);
 
 /// Builds a law, once: in double precision, with some kilobytes of stack. False: it cannot be built, and `message`
 /// says why, in at most `message_bytes` with the closing zero.

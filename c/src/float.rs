@@ -1,5 +1,6 @@
 //! The axis in `f32`, for cores with an FPU.
 
+use crate::changed;
 use crate::config::GimbalConfig;
 use crate::message;
 use crate::signals::{GimbalInputF32, GimbalOutputF32};
@@ -21,8 +22,9 @@ pub struct GimbalStateF32 {
     storage: [u8; crate::GIMBAL_STATE_BYTES],
 }
 
-storage!(GimbalLawF32, Law<f32>, crate::GIMBAL_LAW_BYTES);
-storage!(GimbalStateF32, State<f32>, crate::GIMBAL_STATE_BYTES);
+storage!(GimbalLawF32, Law<f32>);
+storage!(GimbalStateF32, State<f32>);
+changed!(GimbalStateF32, State<f32>);
 
 /// Builds a law, once: in double precision, with some kilobytes of stack. False: it cannot be built, and `message`
 /// says why, in at most `message_bytes` with the closing zero.

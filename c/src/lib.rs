@@ -41,19 +41,13 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 
 /// Memory of the caller's as what lies in it.
 macro_rules! storage {
-    ($(#[$doc:meta])* $name:ident, $inner:ty, $bytes:expr) => {
+    ($name:ident, $inner:ty) => {
         const _: () = assert!(size_of::<$inner>() <= size_of::<$name>() && align_of::<$inner>() <= align_of::<$name>());
 
         impl $name {
             fn inner(&self) -> &$inner {
                 // SAFETY: large enough, aligned, and written by `put` before, as the caller promises.
                 unsafe { &*core::ptr::from_ref(self).cast() }
-            }
-
-            #[allow(dead_code, reason = "a law is not changed")]
-            fn inner_mut(&mut self) -> &mut $inner {
-                // SAFETY: as above.
-                unsafe { &mut *core::ptr::from_mut(self).cast() }
             }
 
             fn put(&mut self, inner: $inner) {
@@ -64,3 +58,16 @@ macro_rules! storage {
     };
 }
 use storage;
+
+/// The same for what is changed in place, which a law is not.
+macro_rules! changed {
+    ($name:ident, $inner:ty) => {
+        impl $name {
+            fn inner_mut(&mut self) -> &mut $inner {
+                // SAFETY: large enough, aligned, and written by `put` before, as the caller promises.
+                unsafe { &mut *core::ptr::from_mut(self).cast() }
+            }
+        }
+    };
+}
+use changed;

@@ -17,9 +17,9 @@ mod target {
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m_rt::exception;
     use critical_section::Mutex;
+    use gimbal_firmware::board;
     use gimbal_firmware::cases::FLIGHT;
-    use gimbal_firmware::{board, semihosting::println};
-    use gimbal_servo::{Digest, Law, Output, State};
+    use gimbal_servo::{Law, Output, State};
     use heapless::spsc::{Producer, Queue};
 
     /// One axis, and where its outputs go.
@@ -50,16 +50,7 @@ mod target {
         timer.enable_counter();
         timer.enable_interrupt();
 
-        let (mut digest, mut steps) = (Digest::default(), 0);
-        while steps < FLIGHT.steps {
-            if let Some(output) = telemetry.dequeue() {
-                digest.add_output(&output);
-                steps += 1;
-            } else {
-                cortex_m::asm::wfi();
-            }
-        }
-        println!("tick f32 {steps} steps {:016x}", digest.value());
+        gimbal_firmware::listen(&mut telemetry);
         Ok(())
     }
 

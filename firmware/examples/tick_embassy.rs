@@ -73,8 +73,7 @@ mod target {
     use embassy_executor::InterruptExecutor;
     use embassy_time::{Duration, Ticker};
     use gimbal_firmware::cases::FLIGHT;
-    use gimbal_firmware::semihosting::println;
-    use gimbal_servo::{Digest, Law, Output};
+    use gimbal_servo::{Law, Output};
     use heapless::spsc::{Producer, Queue};
 
     /// An interrupt that nothing else on the board uses; here the first one.
@@ -111,16 +110,7 @@ mod target {
         EXECUTOR.start(Executor).spawn(axis(law, outputs).map_err(|_| TWICE)?);
         crate::time::start(peripherals.SYST);
 
-        let (mut digest, mut steps) = (Digest::default(), 0);
-        while steps < FLIGHT.steps {
-            if let Some(output) = telemetry.dequeue() {
-                digest.add_output(&output);
-                steps += 1;
-            } else {
-                cortex_m::asm::wfi();
-            }
-        }
-        println!("tick f32 {steps} steps {:016x}", digest.value());
+        gimbal_firmware::listen(&mut telemetry);
         Ok(())
     }
 

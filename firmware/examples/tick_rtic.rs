@@ -30,7 +30,7 @@ mod app {
     use gimbal_firmware::cases::FLIGHT;
     use gimbal_firmware::semihosting::{println, process};
     use gimbal_firmware::{board, semihosting};
-    use gimbal_servo::{Digest, Law, Output, State};
+    use gimbal_servo::{Law, Output, State};
     use heapless::spsc::{Consumer, Producer, Queue};
 
     #[shared]
@@ -75,16 +75,7 @@ mod app {
 
     #[idle(local = [telemetry])]
     fn idle(context: idle::Context) -> ! {
-        let (mut digest, mut steps) = (Digest::default(), 0);
-        while steps < FLIGHT.steps {
-            if let Some(output) = context.local.telemetry.dequeue() {
-                digest.add_output(&output);
-                steps += 1;
-            } else {
-                cortex_m::asm::wfi();
-            }
-        }
-        println!("tick f32 {steps} steps {:016x}", digest.value());
+        gimbal_firmware::listen(context.local.telemetry);
         process::exit(0)
     }
 }

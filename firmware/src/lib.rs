@@ -19,6 +19,38 @@ pub mod entry;
 #[cfg(target_os = "none")]
 pub mod log;
 
+/// The number system that the core is good at.
+#[cfg(all(target_os = "none", target_abi = "eabihf"))]
+pub type Native = f32;
+/// The number system that the core is good at.
+#[cfg(all(target_os = "none", not(target_abi = "eabihf")))]
+pub type Native = gimbal_servo::Fixed;
+
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+mod listen;
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+pub use listen::listen;
+
+/// Makes `run` the program on Cortex-M; elsewhere it says so, and on the host there is nothing.
+#[macro_export]
+macro_rules! arm_program {
+    ($run:path, $name:literal) => {
+        #[cfg(not(target_os = "none"))]
+        fn main() {}
+
+        #[cfg(all(target_os = "none", target_arch = "arm"))]
+        $crate::program!($run);
+
+        #[cfg(all(target_os = "none", not(target_arch = "arm")))]
+        $crate::program!(elsewhere);
+
+        #[cfg(all(target_os = "none", not(target_arch = "arm")))]
+        fn elsewhere() -> Result<(), &'static str> {
+            Err(concat!($name, " runs on Cortex-M alone"))
+        }
+    };
+}
+
 /// Standard output and exit status by semihosting.
 #[cfg(target_os = "none")]
 pub use semihosting;

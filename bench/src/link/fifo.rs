@@ -1,14 +1,14 @@
 //! Two named pipes: the emulator's semihosting opens them as files.
 
 use std::fs::File;
-use std::io::{ErrorKind, Read, Write};
+use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{CWD, FileType, Mode, OFlags};
 
-use super::{Link, LinkError};
+use super::{Link, LinkError, read_once};
 
 /// Name of the pipe to the computer, in its folder.
 const DOWN: &str = "down";
@@ -60,14 +60,9 @@ impl Link for Fifo {
         if !ready[0].revents().contains(PollFlags::IN) {
             return Err(gone("the other end is closed"));
         }
-        let mut buffer = [0; 4096];
-        match (&self.up).read(&mut buffer) {
-            Ok(0) => Err(gone("the other end is closed")),
-            Ok(count) => {
-                bytes.extend_from_slice(&buffer[..count]);
-                Ok(())
-            }
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => Ok(()),
+        match read_once(&mut &self.up, bytes) {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(gone("the other end is closed")),
             Err(error) => Err(gone(&error.to_string())),
         }
     }

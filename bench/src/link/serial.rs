@@ -1,12 +1,12 @@
 //! Serial ports.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::ErrorKind;
 use std::time::Duration;
 
 use gimbal_wire::FRAME_LEN;
 use serialport::SerialPort;
 
-use super::{Link, LinkError};
+use super::{Link, LinkError, read_once};
 
 /// Bits of a byte on the line: start, eight, stop.
 const BITS: f64 = 10.0;
@@ -61,22 +61,10 @@ impl Link for Serial {
             let fail = |error: serialport::Error| LinkError::new(format!("{}: {error}", self.name), "plug it in again");
             self.port.set_timeout(wait).map_err(fail)?;
         }
-        let mut buffer = [0; 4096];
-        match self.port.read(&mut buffer) {
-            Ok(0) => {
-                Err(LinkError::new(format!("{}: the port is gone", self.name), "plug it in again, and start again"))
-            }
-            Ok(count) => {
-                bytes.extend_from_slice(&buffer[..count]);
-                Ok(())
-            }
-            Err(error)
-                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) =>
-            {
-                Ok(())
-            }
-            Err(error) => Err(gone(&self.name, &error)),
+        if read_once(&mut self.port, bytes).map_err(|error| gone(&self.name, &error))? {
+            return Ok(());
         }
+        Err(LinkError::new(format!("{}: the port is gone", self.name), "plug it in again, and start again"))
     }
 
     fn describe(&self) -> String {

@@ -1,10 +1,10 @@
 //! Sockets: TCP, and the local one behind an emulated serial port.
 
-use std::io::{ErrorKind, Read, Write};
+use std::io::{Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
-use super::{Link, LinkError};
+use super::{Link, LinkError, read_once};
 
 /// Time for a connection, and for the other end to take what is sent.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -69,20 +69,10 @@ impl<S: Read + Write> Link for Stream<S> {
             (self.set_wait)(&self.socket, wait).map_err(|error| gone(&self.name, &error))?;
             self.wait = Some(wait);
         }
-        let mut buffer = [0; 4096];
-        match self.socket.read(&mut buffer) {
-            Ok(0) => Err(LinkError::new(format!("{}: the other end has closed the link", self.name), REPAIR)),
-            Ok(count) => {
-                bytes.extend_from_slice(&buffer[..count]);
-                Ok(())
-            }
-            Err(error)
-                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) =>
-            {
-                Ok(())
-            }
-            Err(error) => Err(gone(&self.name, &error)),
+        if read_once(&mut self.socket, bytes).map_err(|error| gone(&self.name, &error))? {
+            return Ok(());
         }
+        Err(LinkError::new(format!("{}: the other end has closed the link", self.name), REPAIR))
     }
 
     fn describe(&self) -> String {

@@ -5,35 +5,15 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[cfg(not(target_os = "none"))]
-fn main() {}
-
-#[cfg(all(target_os = "none", target_arch = "arm"))]
-gimbal_firmware::program!(target::run);
-
-/// The serial port is that of an Arm board.
-#[cfg(all(target_os = "none", not(target_arch = "arm")))]
-mod elsewhere {
-    gimbal_firmware::program!(run);
-
-    fn run() -> Result<(), &'static str> {
-        Err("hil runs on Cortex-M alone")
-    }
-}
+gimbal_firmware::arm_program!(target::run, "hil");
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 mod target {
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m::{Peripherals, singleton};
     use gimbal_computer::Computer;
-    use gimbal_firmware::board;
+    use gimbal_firmware::{Native, board};
     use heapless::Deque;
-
-    /// The number system that the core is good at.
-    #[cfg(target_abi = "eabihf")]
-    type Axis = f32;
-    #[cfg(not(target_abi = "eabihf"))]
-    type Axis = gimbal_servo::Fixed;
 
     /// Time without a byte after which the output goes to its safe value [ms]: a bench in lockstep may pause.
     const SILENCE_MS: u32 = 5_000;
@@ -44,7 +24,7 @@ mod target {
         const TAKEN: &str = "started twice";
         let mut timer = Peripherals::take().ok_or(TAKEN)?.SYST;
         let uart = uart::Uart::start(board::UART.ok_or("the board's file gives no serial port")?);
-        let computer = singleton!(: Computer<Axis> = Computer::new()).ok_or(TAKEN)?;
+        let computer = singleton!(: Computer<Native> = Computer::new()).ok_or(TAKEN)?;
         let waiting = singleton!(: Deque<u8, WAITING> = Deque::new()).ok_or(TAKEN)?;
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(board::COUNTER_HZ / 1_000 - 1);

@@ -3,36 +3,17 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[cfg(not(target_os = "none"))]
-fn main() {}
-
-#[cfg(all(target_os = "none", target_arch = "arm"))]
-gimbal_firmware::program!(target::run);
-
-/// As `hil`, for Cortex-M.
-#[cfg(all(target_os = "none", not(target_arch = "arm")))]
-mod elsewhere {
-    gimbal_firmware::program!(run);
-
-    fn run() -> Result<(), &'static str> {
-        Err("hil_fifo runs on Cortex-M alone")
-    }
-}
+gimbal_firmware::arm_program!(target::run, "hil_fifo");
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 mod target {
     use cortex_m::singleton;
     use gimbal_computer::Computer;
+    use gimbal_firmware::Native;
     use gimbal_firmware::semihosting::fs::File;
     use gimbal_firmware::semihosting::io::{Read, Write};
     use gimbal_wire::FRAME_LEN;
     use heapless::Vec;
-
-    /// The number system that the core is good at.
-    #[cfg(target_abi = "eabihf")]
-    type Axis = f32;
-    #[cfg(not(target_abi = "eabihf"))]
-    type Axis = gimbal_servo::Fixed;
 
     /// Answers that are written at once.
     const AT_ONCE: usize = 16 * FRAME_LEN;
@@ -41,7 +22,7 @@ mod target {
         const CLOSED: &str = "the pipe to the bench is closed";
         let mut down = File::open(c"down").map_err(|_| "no pipe `down` in the emulator's folder")?;
         let mut up = File::create(c"up").map_err(|_| "no pipe `up` in the emulator's folder")?;
-        let computer = singleton!(: Computer<Axis> = Computer::new()).ok_or("started twice")?;
+        let computer = singleton!(: Computer<Native> = Computer::new()).ok_or("started twice")?;
         let mut answers: Vec<u8, AT_ONCE> = Vec::new();
         let mut bytes = [0; 1024];
         loop {

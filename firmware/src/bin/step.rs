@@ -79,7 +79,7 @@ mod target {
         feature = "bad-recursion",
         feature = "bad-indirect"
     ))]
-    #[allow(dead_code)]
+    #[allow(dead_code, reason = "one of them at a time is called")]
     mod bad {
         use core::hint::black_box;
 

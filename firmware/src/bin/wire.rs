@@ -2,35 +2,16 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[cfg(not(target_os = "none"))]
-fn main() {}
-
-#[cfg(all(target_os = "none", target_arch = "arm"))]
-gimbal_firmware::program!(target::run);
-
-/// As `hil`, for Cortex-M.
-#[cfg(all(target_os = "none", not(target_arch = "arm")))]
-mod elsewhere {
-    gimbal_firmware::program!(run);
-
-    fn run() -> Result<(), &'static str> {
-        Err("wire runs on Cortex-M alone")
-    }
-}
+gimbal_firmware::arm_program!(target::run, "wire");
 
 #[cfg(all(target_os = "none", target_arch = "arm"))]
 mod target {
     use core::hint::black_box;
     use cortex_m::singleton;
     use gimbal_computer::{Computer, parameters};
-    use gimbal_firmware::{counter::Counter, semihosting::println};
+    use gimbal_firmware::{Native, counter::Counter, semihosting::println};
     use gimbal_servo::{Config, estimator};
     use gimbal_wire::{FRAME_LEN, Frame, LoadEnd, LoadPart, Message, PART_VALUES, Receiver, Run, Sensor};
-
-    #[cfg(target_abi = "eabihf")]
-    type Axis = f32;
-    #[cfg(not(target_abi = "eabihf"))]
-    type Axis = gimbal_servo::Fixed;
 
     const TICKS: u32 = 1_000;
 
@@ -57,7 +38,7 @@ mod target {
 
     pub(crate) fn run() -> Result<(), &'static str> {
         let mut counter = Counter::start();
-        let computer = singleton!(: Computer<Axis> = Computer::new()).ok_or("started twice")?;
+        let computer = singleton!(: Computer<Native> = Computer::new()).ok_or("started twice")?;
         load(computer);
         let (mut receive, mut emit, mut tick) = (Tally::EMPTY, Tally::EMPTY, Tally::EMPTY);
         let mut receiver = Receiver::default();
@@ -87,7 +68,7 @@ mod target {
         emit.print("emit");
         receive.print("receive");
         tick.print("tick");
-        println!("wire size {} {}", size_of::<Computer<Axis>>(), size_of::<Receiver>());
+        println!("wire size {} {}", size_of::<Computer<Native>>(), size_of::<Receiver>());
         Ok(())
     }
 
@@ -107,7 +88,7 @@ mod target {
         })
     }
 
-    fn load(computer: &mut Computer<Axis>) {
+    fn load(computer: &mut Computer<Native>) {
         let values = parameters::values(&Config::consistent(), &estimator::Config::default());
         for (index, part) in (0..).zip(values.chunks(PART_VALUES)) {
             let mut three = [0.0; PART_VALUES];

@@ -51,11 +51,7 @@ mod target {
     use gimbal_servo::{Law, Output};
     use heapless::spsc::Queue;
 
-    /// The number system that the core is good at.
-    #[cfg(target_abi = "eabihf")]
-    pub(crate) type Axis = f32;
-    #[cfg(not(target_abi = "eabihf"))]
-    pub(crate) type Axis = gimbal_servo::Fixed;
+    pub(crate) type Axis = gimbal_firmware::Native;
 
     pub(crate) type Rows = Queue<gimbal_servo::Input<Axis>, 4>;
     pub(crate) type Outputs = Queue<Output<Axis>, 8>;
