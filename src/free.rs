@@ -16,6 +16,7 @@ use crate::build::plant::Plant;
 use crate::build::poles::ORDER;
 use crate::number::Number;
 use crate::row::{Row, ScaledRow};
+use crate::stored::stored;
 use crate::units::Units;
 
 /// The nine modes' state.
@@ -29,6 +30,8 @@ pub(crate) struct Block<N: Number> {
     pub(crate) drive: [N::Coef; 2],
 }
 
+stored!([N: Number] Block<N> { transition, drive });
+
 /// The ninth mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
@@ -36,6 +39,8 @@ pub(crate) struct Single<N: Number> {
     pub(crate) transition: N::Coef,
     pub(crate) drive: N::Coef,
 }
+
+stored!([N: Number] Single<N> { transition, drive });
 
 /// An output at the end of a period: of the modes at its start, and of the torque's change.
 type Output<N> = Row<N, { ORDER + 1 }>;
@@ -54,6 +59,10 @@ pub(crate) struct Law<N: Number> {
     pub(crate) gyro_angle: Output<N>,
 }
 
+stored!([N: Number] Law<N> {
+    gimbal_rate, gimbal_angle, gimbal_rate_gain, gimbal_angle_gain, blocks, single, gyro_angle,
+});
+
 /// The modes and the physical state at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Instant<N: Number> {
@@ -66,6 +75,8 @@ pub(crate) struct Instant<N: Number> {
     /// The modes of a physical state.
     pub(crate) entry: [ScaledRow<N, PHYSICAL>; ORDER],
 }
+
+stored!([N: Number] Instant<N> { motor_torque, gyro_move, motor, entry });
 
 /// The modes as signals.
 #[derive(Clone, Copy)]

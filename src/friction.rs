@@ -11,6 +11,7 @@
 //! the zone within the period spends equal times on either side of zero in it.
 
 use crate::number::Number;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// The clamp.
@@ -22,6 +23,8 @@ pub(crate) struct Law<N: Number> {
     pub(crate) steepness: N::Coef,
     pub(crate) steepness_shift: u32,
 }
+
+stored!([N: Number] Law<N> { slip_rate, steepness, steepness_shift });
 
 /// A period that starts in the clamp's zone: `w(1) = w_s level / stiffness` if it ends there, too.
 #[derive(Clone, Copy)]

@@ -4,6 +4,7 @@ use crate::config::Range;
 use crate::faults::Faults;
 use crate::number::Number;
 use crate::signals::Input;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// Largest inputs, as [`Number::beyond`] compares with them.
@@ -15,6 +16,8 @@ pub(crate) struct Law {
     pub(crate) rate: u32,
     pub(crate) torque: u32,
 }
+
+stored!([] Law { radial_accel, axial_accel, rate, torque });
 
 impl Law {
     pub(crate) fn build<N: Number>(range: &Range, units: &Units) -> Self {

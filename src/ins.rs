@@ -14,6 +14,7 @@
 //! what is carried; a position is off by less than a count's velocity, 1.5e-8 m/s at 1 kHz, times the time.
 
 use crate::number::Number;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// Sums of one axis pair: `a_y phi`, then `a_x phi`.
@@ -41,6 +42,8 @@ pub(crate) struct Law<N: Number> {
     count_mps2: f64,
     period_s: f64,
 }
+
+stored!([N: Number] Law<N> { scale, count_mps2, period_s });
 
 /// Position error that the sums hold [m].
 const LARGEST_POSITION_M: f64 = 1e8;

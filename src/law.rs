@@ -8,6 +8,7 @@ use crate::number::Number;
 use crate::row::{Row, ScaledRow};
 use crate::signals::{Input, Output};
 use crate::state::State;
+use crate::stored::stored;
 use crate::units::Units;
 use crate::{bearing, free, friction, guard, ins, stop};
 
@@ -52,6 +53,12 @@ pub struct Law<N: Number> {
     pub(crate) units: Units,
     pub(crate) identity: u32,
 }
+
+stored!([N: Number] Law<N> {
+    identity, guard, unusual, held_inputs, cross_coupling, unbalance, level, friction, free, stop_limit, small_angle,
+    rate_shift, ins, tables, instant, motor_shift, largest_angle, stop, drift_torque, drift_angle, drift_shift,
+    largest_drift_torque, units,
+});
 
 impl Config {
     /// Builds the law of this axis.

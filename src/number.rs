@@ -15,6 +15,7 @@ pub use fixed::Fixed;
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
+use crate::stored::Stored;
 use crate::table::SqrtTable;
 
 /// A signal: `f32`, or [`Fixed`] with a full scale of its own.
@@ -29,17 +30,18 @@ pub trait Number:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Neg<Output = Self>
+    + Stored
     + sealed::Sealed
     + 'static
 {
     /// What a signal is multiplied by; for [`Fixed`] a fraction in -1..1.
-    type Coef: Copy + Debug + Default + PartialEq + Mul<Self, Output = Self::Wide>;
+    type Coef: Copy + Debug + Default + PartialEq + Mul<Self, Output = Self::Wide> + Stored;
     /// Sum of products; also holds a state that accumulates small increments.
-    type Wide: Copy + Debug + Default + PartialEq + Add<Output = Self::Wide> + Sub<Output = Self::Wide>;
+    type Wide: Copy + Debug + Default + PartialEq + Add<Output = Self::Wide> + Sub<Output = Self::Wide> + Stored;
     /// What a count has left over.
     type Carry: Copy + Debug + Default + PartialEq;
     /// Size of a count.
-    type CountScale: Copy + Debug + PartialEq;
+    type CountScale: Copy + Debug + PartialEq + Stored;
 
     /// Zero.
     const ZERO: Self;

@@ -1,6 +1,7 @@
 //! Sums of products: one row of a matrix times signals of different full scales.
 
 use crate::number::Number;
+use crate::stored::stored;
 
 /// `sum of coefficient * signal`, each signal with its own full scale, the sum with one that holds it and every term.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -8,6 +9,8 @@ use crate::number::Number;
 pub(crate) struct Row<N: Number, const L: usize> {
     pub(crate) coefs: [N::Coef; L],
 }
+
+stored!([N: Number, const L: usize] Row<N, L> { coefs });
 
 impl<N: Number, const L: usize> Row<N, L> {
     /// Quantises factors in SI for signals of the full scales `2^from` and a sum of the full scale `2^to`, which must hold
@@ -51,6 +54,8 @@ pub(crate) struct ScaledRow<N: Number, const L: usize> {
     /// The coefficients are `2^shift` too small, so that fractions can hold them.
     pub(crate) shift: u32,
 }
+
+stored!([N: Number, const L: usize] ScaledRow<N, L> { coefs, shift });
 
 impl<N: Number, const L: usize> ScaledRow<N, L> {
     /// As [`Row::build`], for any full scale of the sum.

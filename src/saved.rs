@@ -21,6 +21,7 @@ use crate::law::Law;
 use crate::number::Number;
 use crate::state::{Regime, State};
 use crate::stop::Side;
+use crate::stored::{Reader, Writer};
 
 const MAGIC: [u8; 4] = *b"GSS2";
 
@@ -204,42 +205,11 @@ fn walk<N: Number>(state: &mut State<N>, codec: &mut impl Codec) {
     }
 }
 
-struct Writer<'a> {
-    rest: &'a mut [u8],
-}
-
-impl Writer<'_> {
-    fn put(&mut self, bytes: &[u8]) {
-        let rest = core::mem::take(&mut self.rest);
-        // SAVED_LEN is the sum of all fields; a short buffer would drop bytes, which the round trip's test shows.
-        let (head, tail) = rest.split_at_mut(bytes.len().min(rest.len()));
-        head.copy_from_slice(&bytes[..head.len()]);
-        self.rest = tail;
-    }
-}
-
 impl Codec for Writer<'_> {
     fn bytes<const L: usize>(&mut self, bytes: &mut [u8; L]) {
         self.put(bytes);
     }
     fn reject(&mut self) {}
-}
-
-struct Reader<'a> {
-    rest: &'a [u8],
-    impossible: bool,
-}
-
-impl Reader<'_> {
-    fn take<const L: usize>(&mut self) -> [u8; L] {
-        if let Some((head, tail)) = self.rest.split_first_chunk::<L>() {
-            self.rest = tail;
-            *head
-        } else {
-            self.impossible = true;
-            [0; L]
-        }
-    }
 }
 
 impl Codec for Reader<'_> {

@@ -18,6 +18,7 @@ pub(crate) mod release;
 use crate::build::plant::{LAGS, Plant};
 use crate::number::Number;
 use crate::row::ScaledRow;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// What shapes the motor torque on a stop: y, then `z_i`.
@@ -50,6 +51,11 @@ pub(crate) struct Law<N: Number> {
     pub(crate) contact: contact::Law<N>,
     pub(crate) release: release::Law<N>,
 }
+
+stored!([N: Number] Law<N> {
+    angle, integrator_change, lag_decay, gimbal_rate_change, gimbal_angle_change, motor_torque, gimbal_rate_gain,
+    contact, release,
+});
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(plant: &Plant, units: &Units, stop_angle_rad: f64, period: f64) -> Self {

@@ -5,6 +5,7 @@
 //! `|p (p - 1)| / 8 / 16^2` of f: 1.1e-4 for p = 0.33 and p = 2/3.
 
 use crate::number::Number;
+use crate::stored::stored;
 
 /// A chord: `offset + slope * x`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -12,6 +13,8 @@ pub(crate) struct Chord<N: Number> {
     pub(crate) offset: N,
     pub(crate) slope: N::Coef,
 }
+
+stored!([N: Number] Chord<N> { offset, slope });
 
 impl<N: Number> Chord<N> {
     #[inline(always)]
@@ -31,6 +34,8 @@ pub(crate) struct PowerTable<N: Number> {
     first: i32,
     chords: [Chord<N>; CHORDS],
 }
+
+stored!([N: Number] PowerTable<N> { first, chords });
 
 impl<N: Number> PowerTable<N> {
     /// Tabulates `function` up to `largest`, both in SI; arguments and values have the full scales `2^from` and `2^to`.
@@ -77,6 +82,8 @@ pub(crate) fn segment<N: Number>(first: i32, argument: N) -> u32 {
 pub struct SqrtTable<N: Number> {
     chords: [Chord<N>; 64],
 }
+
+stored!([N: Number] SqrtTable<N> { chords });
 
 impl<N: Number> SqrtTable<N> {
     /// `lowest` is the smallest mantissa: 1 for `f32`, 1/4 for `Fixed`.

@@ -6,6 +6,7 @@ use crate::build::plant::{LAGS, Plant};
 use crate::build::poles::ORDER;
 use crate::number::Number;
 use crate::row::Row;
+use crate::stored::stored;
 
 /// Exponents of the full scales; all 0 for `f32`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +29,8 @@ pub struct Units {
     pub(crate) modes: [i32; ORDER],
     pub(crate) lags: [i32; LAGS],
 }
+
+stored!([] Units { accel, rate, torque, gimbal_angle, gimbal_rate, gyro_angle, motor_torque, modes, lags });
 
 impl Units {
     pub(crate) fn new<N: Number>(config: &Config, plant: &Plant, modes: &Modes) -> Self {

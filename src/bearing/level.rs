@@ -4,6 +4,7 @@ use crate::Config;
 use crate::faults::Faults;
 use crate::number::Number;
 use crate::row::Row;
+use crate::stored::stored;
 use crate::table::{PowerTable, SqrtTable};
 use crate::units::Units;
 
@@ -29,6 +30,11 @@ pub(crate) struct Law<N: Number> {
     pub(crate) viscous_low: N,
 }
 
+stored!([N: Number] Law<N> {
+    largest_radial, static_load, axial_load, static_preload, axial_preload, load_shift, shift, viscous_break,
+    viscous_low,
+});
+
 /// Its tables.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tables<N: Number> {
@@ -37,6 +43,8 @@ pub(crate) struct Tables<N: Number> {
     pub(crate) power: PowerTable<N>,
     pub(crate) viscous_high: PowerTable<N>,
 }
+
+stored!([N: Number] Tables<N> { sqrt, power, viscous_high });
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(config: &Config, units: &Units) -> (Self, Tables<N>) {

@@ -1,6 +1,7 @@
 //! Sums of independent uncertainties.
 
 use crate::number::Number;
+use crate::stored::stored;
 
 /// `sqrt(a^2 + b^2)` to 1.3 %, without a square, which fixed point has no room for: the larger of `m + l / 8` and
 /// `27 m / 32 + 9 l / 16`, m the larger and l the smaller of the two.
@@ -10,6 +11,8 @@ pub(crate) struct RootSum<N: Number> {
     most: N::Coef,
     least: N::Coef,
 }
+
+stored!([N: Number] RootSum<N> { eighth, most, least });
 
 impl<N: Number> RootSum<N> {
     pub(crate) fn build() -> Self {

@@ -10,6 +10,7 @@ use crate::number::Number;
 use crate::row::ScaledRow;
 use crate::state::State as ModelState;
 use crate::stop::Side;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// What the mean of neighbouring samples misses of the motor torque's impulse after a contact, as phi'.
@@ -25,6 +26,8 @@ pub(crate) struct Contact<N: Number> {
     powers: [ScaledRow<N, 1>; 3],
     shift: u32,
 }
+
+stored!([N: Number] Contact<N> { powers, shift });
 
 impl<N: Number> Contact<N> {
     pub(crate) fn build(plant: &Plant, units: &Units, scale: i32, gyro: i32, period: f64) -> Self {

@@ -12,6 +12,7 @@ use super::sums::BLOCK;
 use crate::faults::Faults;
 use crate::number::Number;
 use crate::signals::Input;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// `a_x`, `a_y`, `a_z`, rate.
@@ -32,6 +33,8 @@ pub(crate) struct Law<N: Number> {
     bridge_rows: u32,
     torque_measured: bool,
 }
+
+stored!([N: Number] Law<N> { jumps, torque_jump, gyro_range, torque_range, stuck_rows, bridge_rows, torque_measured });
 
 /// Rows in a row, of each trouble.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -15,6 +15,7 @@ use super::release::RATES;
 use crate::number::Number;
 use crate::row::ScaledRow;
 use crate::state::State as ModelState;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// Periods of which [`State::time`] is a share.
@@ -72,6 +73,11 @@ pub(crate) struct Law<N: Number> {
     pub(crate) torque_noise: N,
     pub(crate) torque_shift: u32,
 }
+
+stored!([N: Number] Law<N> {
+    rate_change, angle_change, span, tick, rate_share, inertia_share, model_share, contact_share, rate_noise,
+    torque_noise, torque_shift,
+});
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(config: &Config, axis: &crate::Config, units: &Units, filter: &Filter) -> Self {

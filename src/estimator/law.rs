@@ -11,6 +11,7 @@ use super::{health, held, release, sums};
 use crate::build::plant::Plant;
 use crate::number::Number;
 use crate::row::{Row, ScaledRow};
+use crate::stored::stored;
 use crate::units::Units;
 
 /// The estimator of one axis, ready to step: built once from a [`Config`], never changed.
@@ -71,6 +72,12 @@ pub struct Law<N: Number> {
     /// Full scale of theta.
     pub(super) gyro: i32,
 }
+
+stored!([N: Number] Law<N> {
+    health, change, gain, shift, gate, zone, rest, seen, ahead, stop, ratio_share, noise, transient_decay,
+    transient_gain, level_gain, jump, sudden, usual, widest, root_sum, torque, sums, quick_gain, settling_rows, held,
+    release, contact, rate, coupling, load, fallen, outage, delay, servo, units, gyro,
+});
 
 /// A share of something, as a factor.
 pub(crate) fn share<N: Number>(value: f64) -> N::Coef {

@@ -11,6 +11,7 @@ use super::bound::RootSum;
 use super::held;
 use crate::number::Number;
 use crate::row::ScaledRow;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// Rates that the balance remembers: the longest time between a release and its being seen, in periods.
@@ -27,6 +28,8 @@ pub(crate) struct Law<N: Number> {
     keep: N::Coef,
     take: N::Coef,
 }
+
+stored!([N: Number] Law<N> { rate, keep, take });
 
 /// Where the release was, and what theta and phi' have done since.
 #[derive(Clone, Copy)]

@@ -5,6 +5,7 @@ use super::state::{Regime, State};
 use crate::build::plant::Plant;
 use crate::number::Number;
 use crate::row::ScaledRow;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// (3) as it follows theta: y, then `z_i`.
@@ -15,6 +16,8 @@ pub(crate) struct Servo<N: Number> {
     lags: [ScaledRow<N, 1>; 5],
     torque: ScaledRow<N, 7>,
 }
+
+stored!([N: Number] Servo<N> { integrator, decay, lags, torque });
 
 impl<N: Number> Servo<N> {
     pub(crate) fn build(plant: &Plant, units: &Units, scale: i32, period: f64) -> Self {

@@ -8,6 +8,7 @@
 //! 64 and 128 bits, what is left over carried on. Hours of small increments lose nothing.
 
 use crate::number::Number;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// B.
@@ -37,6 +38,8 @@ pub(crate) struct Law<N: Number> {
     count: i32,
     period_s: f64,
 }
+
+stored!([N: Number] Law<N> { scale, full, count, period_s });
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(units: &Units, largest_accel: f64, period_s: f64) -> Self {

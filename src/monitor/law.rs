@@ -9,6 +9,7 @@ use crate::number::Number;
 use crate::row::ScaledRow;
 use crate::signals::{Output, Stop};
 use crate::state::State as ModelState;
+use crate::stored::stored;
 
 /// Rows of a block.
 const BLOCK: u32 = 32;
@@ -91,6 +92,11 @@ pub struct Law<N: Number> {
     /// Rows over which a reversal is felt.
     felt: u32,
 }
+
+stored!([N: Number] Law<N> {
+    measured_shift, modelled_shift, slip_rate, noise, zone, share, decay, share_of_block, allowance, largest,
+    threshold, exponent, felt,
+});
 
 /// The test's memory.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -10,6 +10,7 @@
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::Number;
+use crate::stored::{Reader, Stored, Writer, load_signal, store_signal};
 use crate::table::SqrtTable;
 
 /// A signal as a 32-bit fraction, -1..1, of its full scale. Sums saturate.
@@ -372,5 +373,41 @@ impl Number for Fixed {
 
     fn wide_from_bits(bits: u64) -> Wide {
         Wide(bits as i64)
+    }
+}
+
+impl Stored for Fixed {
+    const LEN: usize = 4;
+
+    fn store(&self, writer: &mut Writer<'_>) {
+        store_signal(*self, writer);
+    }
+
+    fn load(reader: &mut Reader<'_>) -> Self {
+        load_signal(reader)
+    }
+}
+
+impl Stored for Coef {
+    const LEN: usize = 4;
+
+    fn store(&self, writer: &mut Writer<'_>) {
+        store_signal(Fixed(self.0), writer);
+    }
+
+    fn load(reader: &mut Reader<'_>) -> Self {
+        Self(load_signal::<Fixed>(reader).0)
+    }
+}
+
+impl Stored for Wide {
+    const LEN: usize = 8;
+
+    fn store(&self, writer: &mut Writer<'_>) {
+        writer.put(&self.0.to_le_bytes());
+    }
+
+    fn load(reader: &mut Reader<'_>) -> Self {
+        Self(i64::from_le_bytes(reader.take()))
     }
 }

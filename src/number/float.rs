@@ -8,6 +8,7 @@
 )]
 
 use super::Number;
+use crate::stored::{Reader, Stored, Writer, load_signal, store_signal};
 use crate::table::SqrtTable;
 
 const SIGN: u32 = 1 << 31;
@@ -270,5 +271,17 @@ impl Number for f32 {
 
     fn wide_from_bits(bits: u64) -> f32 {
         f32::from_bits(bits as u32)
+    }
+}
+
+impl Stored for f32 {
+    const LEN: usize = 4;
+
+    fn store(&self, writer: &mut Writer<'_>) {
+        store_signal(*self, writer);
+    }
+
+    fn load(reader: &mut Reader<'_>) -> Self {
+        load_signal(reader)
     }
 }

@@ -10,6 +10,7 @@ use crate::build::plant::{LAGS, Plant};
 use crate::crossing::Arc;
 use crate::number::Number;
 use crate::row::ScaledRow;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// Factors of the contact's correction; `e` angles, `h` and sums over it in periods.
@@ -28,6 +29,8 @@ pub(crate) struct Law<N: Number> {
     gimbal_angle: ScaledRow<N, 2>,
 }
 
+stored!([N: Number] Law<N> { lags, integrator, gimbal_rate, motor_share, sixth, gimbal_angle });
+
 /// Response of one lag to a rate that changes linearly over the last `h` of a period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct LagTail<N: Number> {
@@ -36,6 +39,8 @@ struct LagTail<N: Number> {
     curve: Curve<N>,
     gain: ScaledRow<N, 1>,
 }
+
+stored!([N: Number] LagTail<N> { exponent, curve, gain });
 
 impl<N: Number> Law<N> {
     pub(super) fn build(plant: &Plant, units: &Units, period: f64) -> Self {

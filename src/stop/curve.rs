@@ -1,10 +1,23 @@
 //! Response of an exponential to a straight line, for any part of a period.
 
 use crate::number::Number;
+use crate::stored::{Reader, Stored, Writer};
 
 /// `(e^(x h) - 1 - x h) / (x h)^2` for `0 <= h <= 1`, a polynomial in h.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Curve<N: Number>([N; CURVE]);
+
+impl<N: Number> Stored for Curve<N> {
+    const LEN: usize = <[N; CURVE]>::LEN;
+
+    fn store(&self, writer: &mut Writer<'_>) {
+        self.0.store(writer);
+    }
+
+    fn load(reader: &mut Reader<'_>) -> Self {
+        Self(Stored::load(reader))
+    }
+}
 
 const CURVE: usize = 7;
 /// Curves and exponents are held in a full scale of 8.

@@ -9,6 +9,7 @@ use super::curve::{CURVE_SHIFT, Curve};
 use crate::build::plant::{LAGS, Plant};
 use crate::number::Number;
 use crate::row::ScaledRow;
+use crate::stored::stored;
 use crate::units::Units;
 
 /// What the float has done by the end of the period in which it left the stop.
@@ -23,6 +24,8 @@ pub(crate) struct Law<N: Number> {
     /// phi less the offset, for theta and theta'.
     gimbal_angle: ScaledRow<N, 2>,
 }
+
+stored!([N: Number] Law<N> { curve, gyro_rate, gyro_angle, lags, gimbal_angle });
 
 /// The physical state when the gyro has left its stop.
 pub(crate) struct Released<N: Number> {
