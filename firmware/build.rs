@@ -1,9 +1,10 @@
-//! Chooses the board, gives the linker its memory map and the program its constants.
+//! Builds the law that the program `flight` flies, so that the target needs no doubles for it; chooses the board, gives the linker its memory map and the program its constants.
 //!
 //! The board is `GIMBAL_BOARD`, or the default one of the target. A linker looks for `memory.x` in its working
 //! directory first, which is the root of the workspace, so the default board's map would shadow every other: only the
 //! default board is linked through `memory.x`; for the others the map is written into the link script itself.
 
+use gimbal_servo::{Fixed, Law};
 use serde::Deserialize;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -19,7 +20,14 @@ struct Board {
     counter: Counter,
     watchdog: Option<Peripheral>,
     uart: Option<Peripheral>,
+    clint: Option<Clint>,
     sensor: Option<Sensor>,
+}
+
+#[derive(Deserialize)]
+struct Clint {
+    address: u32,
+    hz: u32,
 }
 
 #[derive(Deserialize)]
@@ -51,13 +59,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-env-changed=GIMBAL_BOARD");
     let out = PathBuf::from(env::var("OUT_DIR")?);
     write_vectors(&out)?;
+    write_law(&out)?;
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
-        return write_constants(&out, "host", 1_000_000, [None; 2], None, u32::MAX);
+        return write_constants(&out, "host", 1_000_000, [None; 2], (None, None), u32::MAX);
     }
     let target = env::var("TARGET")?;
     let (name, board) = choose(&target)?;
     let peripherals = [board.watchdog.as_ref(), board.uart.as_ref()];
-    write_constants(&out, &name, board.counter.hz, peripherals, board.sensor.as_ref(), board.ram.length_bytes)?;
+    write_constants(
+        &out,
+        &name,
+        board.counter.hz,
+        peripherals,
+        (board.sensor.as_ref(), board.clint.as_ref()),
+        board.ram.length_bytes,
+    )?;
     link(&out, &target, &board)
 }
 
@@ -85,13 +101,15 @@ fn write_constants(
     name: &str,
     counter_hz: u32,
     peripherals: [Option<&Peripheral>; 2],
-    sensor: Option<&Sensor>,
+    (sensor, clint): (Option<&Sensor>, Option<&Clint>),
     ram_bytes: u32,
 ) -> Result<(), Box<dyn Error>> {
     let ram_bytes = thousands(ram_bytes);
     let counter_hz = thousands(counter_hz);
     let sensor = sensor
         .map_or("None".into(), |Sensor { address, interrupt }| format!("Some(({}, {interrupt}))", grouped(*address)));
+    let clint = clint
+        .map_or("None".into(), |Clint { address, hz }| format!("Some(({}, {}))", grouped(*address), thousands(*hz)));
     let [watchdog, uart] = peripherals.map(|peripheral| {
         peripheral.map_or("None".into(), |peripheral| format!("Some({})", grouped(peripheral.address)))
     });
@@ -102,6 +120,8 @@ fn write_constants(
          /// Base address of the CMSDK UART, if the board has one.\npub const UART: Option<u32> = {uart};\n\
          /// Base address and interrupt of the PL022 port that the sensor sits on, if the board has one.\n\
          pub const SENSOR: Option<(u32, u16)> = {sensor};\n\
+         /// Base address of the core-local interruptor of a RISC-V board, and the rate of its timer [1/s].\n\
+         pub const CLINT: Option<(u32, u32)> = {clint};\n\
          /// Memory for data and stack [bytes].\npub const RAM_BYTES: u32 = {ram_bytes};\n"
     );
     Ok(fs::write(out.join("board.rs"), text)?)
@@ -122,6 +142,38 @@ fn write_vectors(out: &Path) -> Result<(), Box<dyn Error>> {
     let text = fs::read_to_string("vectors/flight.csv")?;
     let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).skip(1).collect();
     Ok(fs::write(out.join("flight.rs"), format!("[\n    [{}],\n]\n", rows.join("],\n    [")))?)
+}
+
+/// Images of the law that `flight` flies, and what a count of its sensor is to each number system.
+fn write_law(out: &Path) -> Result<(), Box<dyn Error>> {
+    // 1 mm/s2, 0.001 deg/s.
+    const COUNTS: [f64; 2] = [1e-3, 1e-3 * std::f64::consts::PI / 180.0];
+    let config = gimbal_servo::Config::consistent();
+    let single = config.build::<f32>()?;
+    let mut image = vec![0; Law::<f32>::IMAGE_LEN];
+    single.to_image(&mut image)?;
+    fs::write(out.join("law-f32.image"), image)?;
+    let fixed = config.build::<Fixed>()?;
+    let mut image = vec![0; Law::<Fixed>::IMAGE_LEN];
+    fixed.to_image(&mut image)?;
+    fs::write(out.join("law-fixed.image"), image)?;
+
+    let scales = [fixed.units().accel, fixed.units().rate];
+    // With 16 bits of fraction.
+    let factors: Vec<String> = COUNTS
+        .iter()
+        .zip(scales)
+        .map(|(count, scale)| (count * 2.0_f64.powi(31 + 16 - scale)).round().to_string())
+        .collect();
+    let [accel, rate] = COUNTS.map(|count| count as f32);
+    let text = format!(
+        "/// What a count is to the law.\n#[expect(clippy::unreadable_literal, reason = \"made by the build script\")]\n\
+         const F32_COUNTS: [f32; 2] = [{accel:?}, {rate:?}];\n/// Likewise.\n\
+         #[expect(clippy::unreadable_literal, reason = \"made by the build script\")]\n\
+         const FIXED_COUNTS: [i32; 2] = [{}];\n",
+        factors.join(", ")
+    );
+    Ok(fs::write(out.join("minute.rs"), text)?)
 }
 
 /// Link arguments for every program of this package.

@@ -99,13 +99,27 @@ macro_rules! has_image {
                 write($kind, N::TAG, self, image)
             }
 
+            /// No law: zeros, the place for an image to be read into. It starts nothing and moves nothing.
+            pub const BLANK: Self = <Self as Stored>::BLANK;
+
             /// The law of an image. It steps as the one that the image was made of, bit for bit; nothing here computes
             /// with doubles.
             ///
             /// # Errors
             /// What is wrong with the image, from its length to its last field.
             pub fn from_image(image: &[u8]) -> Result<Self, ImageError> {
-                read($kind, N::TAG, image)
+                let mut law = Self::BLANK;
+                law.read_image(image)?;
+                Ok(law)
+            }
+
+            /// Likewise in place, in static memory: the law never passes over the stack, which holds it twice in
+            /// [`Self::from_image`]. After an error the law is [`Self::BLANK`].
+            ///
+            /// # Errors
+            /// As those of [`Self::from_image`].
+            pub fn read_image(&mut self, image: &[u8]) -> Result<(), ImageError> {
+                read($kind, N::TAG, image, self)
             }
         }
     };
@@ -133,11 +147,26 @@ fn write<T: Stored>(kind: u8, number: u8, law: &T, image: &mut [u8]) -> Result<(
     Ok(())
 }
 
-fn read<T: Stored>(kind: u8, number: u8, image: &[u8]) -> Result<T, ImageError> {
+fn read<T: Stored>(kind: u8, number: u8, image: &[u8], law: &mut T) -> Result<(), ImageError> {
+    let read = match content::<T>(kind, number, image) {
+        Ok(content) => {
+            let mut reader = Reader { rest: content, impossible: false };
+            law.load(&mut reader);
+            if reader.impossible { Err(ImageError::Impossible) } else { Ok(()) }
+        }
+        Err(error) => Err(error),
+    };
+    if read.is_err() {
+        *law = T::BLANK;
+    }
+    read
+}
+
+/// What stands between header and digest.
+fn content<T: Stored>(kind: u8, number: u8, image: &[u8]) -> Result<&[u8], ImageError> {
     let wrong_length = ImageError::WrongLength { needed: length::<T>(), given: image.len() };
-    let (magic, rest) = image.split_first_chunk().ok_or(wrong_length)?;
-    let ([version, found_kind, found_number, zero, length @ ..], rest) =
-        rest.split_first_chunk::<{ HEADER_LEN - 4 }>().ok_or(wrong_length)?;
+    let ([magic @ .., version, found_kind, found_number, zero, a, b, c, d], _) =
+        image.split_first_chunk::<HEADER_LEN>().ok_or(wrong_length)?;
     if *magic != MAGIC {
         return Err(ImageError::NotAnImage);
     }
@@ -155,10 +184,10 @@ fn read<T: Stored>(kind: u8, number: u8, image: &[u8]) -> Result<T, ImageError> 
     if *digest != digest_of(content) {
         return Err(ImageError::Damaged);
     }
-    let mut reader = Reader { rest, impossible: false };
-    reader.require(*zero == 0 && u32::from_le_bytes(*length) as usize == image.len());
-    let law = T::load(&mut reader);
-    if reader.impossible { Err(ImageError::Impossible) } else { Ok(law) }
+    if *zero != 0 || u32::from_le_bytes([*a, *b, *c, *d]) as usize != image.len() {
+        return Err(ImageError::Impossible);
+    }
+    Ok(content.get(HEADER_LEN..).unwrap_or_default())
 }
 
 fn check_length<T: Stored>(image: &[u8]) -> Result<(), ImageError> {

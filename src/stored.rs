@@ -9,10 +9,13 @@ use crate::number::Number;
 pub trait Stored: Sized {
     /// Its length in bytes.
     const LEN: usize;
+    /// Zero.
+    const BLANK: Self;
     /// Writes its bytes.
     fn store(&self, writer: &mut Writer<'_>);
-    /// Reads its bytes; where they are no value of this type, the reader says so.
-    fn load(reader: &mut Reader<'_>) -> Self;
+    /// Takes the value of its bytes; where they are none of this type, the reader says so. In place: a small target's
+    /// stack does not hold a law twice.
+    fn load(&mut self, reader: &mut Reader<'_>);
 }
 
 /// Bytes still to be written.
@@ -50,6 +53,12 @@ impl Reader<'_> {
         }
     }
 
+    /// The next word. Read in one place: unrolled, a law's hundreds of words are more code than the law.
+    #[inline(never)]
+    fn word(&mut self) -> u32 {
+        u32::from_le_bytes(self.take())
+    }
+
     /// Notes that `possible` does not hold.
     pub(crate) fn require(&mut self, possible: bool) {
         self.impossible |= !possible;
@@ -62,14 +71,16 @@ macro_rules! stored {
     ([$($generics:tt)*] $law:ty { $($field:ident),+ $(,)? }) => {
         impl<$($generics)*> $crate::stored::Stored for $law {
             const LEN: usize = 0 $(+ $crate::stored::len_of::<Self, _>(|law| &law.$field))+;
+            const BLANK: Self = Self { $($field: $crate::stored::Stored::BLANK),+ };
 
             fn store(&self, writer: &mut $crate::stored::Writer<'_>) {
                 let Self { $($field),+ } = self;
                 $($crate::stored::Stored::store($field, writer);)+
             }
 
-            fn load(reader: &mut $crate::stored::Reader<'_>) -> Self {
-                Self { $($field: $crate::stored::Stored::load(reader)),+ }
+            fn load(&mut self, reader: &mut $crate::stored::Reader<'_>) {
+                let Self { $($field),+ } = self;
+                $($crate::stored::Stored::load($field, reader);)+
             }
         }
     };
@@ -83,82 +94,91 @@ pub(crate) const fn len_of<S, T: Stored>(_: fn(&S) -> &T) -> usize {
 
 impl<T: Stored, const L: usize> Stored for [T; L] {
     const LEN: usize = L * T::LEN;
+    const BLANK: Self = [T::BLANK; L];
 
     fn store(&self, writer: &mut Writer<'_>) {
-        self.iter().for_each(|value| value.store(writer));
+        for value in self {
+            value.store(writer);
+        }
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        core::array::from_fn(|_| T::load(reader))
+    #[inline(never)]
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        for value in self {
+            value.load(reader);
+        }
     }
 }
 
 /// Limits, shifts and counts: any bits.
 impl Stored for u32 {
     const LEN: usize = 4;
+    const BLANK: Self = 0;
 
     fn store(&self, writer: &mut Writer<'_>) {
         writer.put(&self.to_le_bytes());
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        Self::from_le_bytes(reader.take())
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        *self = reader.word();
     }
 }
 
 /// Exponents and places in a table: far from where their sums would overflow.
 impl Stored for i32 {
     const LEN: usize = 4;
+    const BLANK: Self = 0;
 
     fn store(&self, writer: &mut Writer<'_>) {
         writer.put(&self.to_le_bytes());
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        let value = Self::from_le_bytes(reader.take());
-        reader.require((-0x1_0000..=0x1_0000).contains(&value));
-        value
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        *self = Self::from_le_bytes(reader.word().to_le_bytes());
+        reader.require((-0x1_0000..=0x1_0000).contains(self));
     }
 }
 
 impl Stored for bool {
     const LEN: usize = 1;
+    const BLANK: Self = false;
 
     fn store(&self, writer: &mut Writer<'_>) {
         writer.put(&[u8::from(*self)]);
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
+    fn load(&mut self, reader: &mut Reader<'_>) {
         let [byte] = reader.take();
         reader.require(byte <= 1);
-        byte == 1
+        *self = byte == 1;
     }
 }
 
 /// Moved as it is: no double is computed with.
 impl Stored for f64 {
     const LEN: usize = 8;
+    const BLANK: Self = 0.0;
 
     fn store(&self, writer: &mut Writer<'_>) {
         writer.put(&self.to_bits().to_le_bytes());
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
+    fn load(&mut self, reader: &mut Reader<'_>) {
         const EXPONENT: u64 = 0x7FF << 52;
         let bits = u64::from_le_bytes(reader.take());
         reader.require(bits & EXPONENT != EXPONENT);
-        Self::from_bits(bits)
+        *self = Self::from_bits(bits);
     }
 }
 
-/// The bytes of a signal.
+/// Writes the bytes of a signal.
 pub(crate) fn store_signal<N: Number>(signal: N, writer: &mut Writer<'_>) {
     writer.put(&signal.to_bits().to_le_bytes());
 }
 
 /// The signal of these bytes.
 pub(crate) fn load_signal<N: Number>(reader: &mut Reader<'_>) -> N {
-    let signal = N::from_bits(u32::from_le_bytes(reader.take()));
+    let signal = N::from_bits(reader.word());
     reader.require(signal.is_number());
     signal
 }

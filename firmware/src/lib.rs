@@ -18,6 +18,7 @@ pub mod counter;
 pub mod entry;
 #[cfg(target_os = "none")]
 pub mod log;
+pub mod minute;
 
 /// The number system that the core is good at.
 #[cfg(all(target_os = "none", target_abi = "eabihf"))]

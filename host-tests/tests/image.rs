@@ -140,6 +140,12 @@ fn closed_form_each_wrong_image_has_an_error_of_its_own() {
     for (place, value) in [(7, 1), (8, 0), (HEADER_LEN + 4 + 16, 2)] {
         assert_eq!(sealed(place, value), Err(ImageError::Impossible), "byte {place}");
     }
+    // In place, too; and nothing is left of what was there.
+    let mut place = law;
+    assert_eq!(place.read_image(&bytes[..needed - 1]), Err(ImageError::WrongLength { needed, given: needed - 1 }));
+    assert_eq!(place, Law::BLANK);
+    place.read_image(&bytes).unwrap();
+    assert_eq!(place, law);
     // Another identity is a law of other parameters, and states know it.
     let other = sealed(HEADER_LEN, !bytes[HEADER_LEN]).unwrap();
     assert_eq!(other.restore(&law.save(&law.start())), Err(gimbal_servo::RestoreError::OtherLaw));

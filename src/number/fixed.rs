@@ -378,36 +378,39 @@ impl Number for Fixed {
 
 impl Stored for Fixed {
     const LEN: usize = 4;
+    const BLANK: Self = Self(0);
 
     fn store(&self, writer: &mut Writer<'_>) {
         store_signal(*self, writer);
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        load_signal(reader)
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        *self = load_signal(reader);
     }
 }
 
 impl Stored for Coef {
     const LEN: usize = 4;
+    const BLANK: Self = Self(0);
 
     fn store(&self, writer: &mut Writer<'_>) {
         store_signal(Fixed(self.0), writer);
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        Self(load_signal::<Fixed>(reader).0)
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        self.0 = load_signal::<Fixed>(reader).0;
     }
 }
 
 impl Stored for Wide {
     const LEN: usize = 8;
+    const BLANK: Self = Self(0);
 
     fn store(&self, writer: &mut Writer<'_>) {
         writer.put(&self.0.to_le_bytes());
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        Self(i64::from_le_bytes(reader.take()))
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        self.0 = i64::from_le_bytes(reader.take());
     }
 }

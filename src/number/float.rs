@@ -276,12 +276,13 @@ impl Number for f32 {
 
 impl Stored for f32 {
     const LEN: usize = 4;
+    const BLANK: Self = 0.0;
 
     fn store(&self, writer: &mut Writer<'_>) {
         store_signal(*self, writer);
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        load_signal(reader)
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        *self = load_signal(reader);
     }
 }

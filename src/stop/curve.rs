@@ -9,13 +9,14 @@ pub(super) struct Curve<N: Number>([N; CURVE]);
 
 impl<N: Number> Stored for Curve<N> {
     const LEN: usize = <[N; CURVE]>::LEN;
+    const BLANK: Self = Self(Stored::BLANK);
 
     fn store(&self, writer: &mut Writer<'_>) {
         self.0.store(writer);
     }
 
-    fn load(reader: &mut Reader<'_>) -> Self {
-        Self(Stored::load(reader))
+    fn load(&mut self, reader: &mut Reader<'_>) {
+        self.0.load(reader);
     }
 }
 

@@ -1,8 +1,8 @@
-//! Stage `target-flight`: a minute of flight at 1 kHz on every board with interrupts, all outputs equal to the host's, no
-//! deadline missed; and with a tick that is made too long, the misses are counted and the watchdog bites.
+//! Stage `target-flight`: a minute of flight at 1 kHz on every board, with a law from an image and nothing in the program
+//! that computes with doubles: all outputs equal to the host's, no deadline missed; and with a tick that is made too long, the misses are counted and the watchdog bites.
 
 use super::boards::{self, Board};
-use super::{emulator, image};
+use super::{emulator, gates, image};
 use crate::shell::{capture, cargo};
 use crate::stages::Note;
 use anyhow::{Context, Result, ensure};
@@ -16,13 +16,16 @@ pub(crate) fn check() -> Result<Note> {
         ensure!(success, "{}:\n{output}", board.name);
         let digest = output.lines().find(|line| line.starts_with("flight ")).unwrap_or_default();
         ensure!(expected.lines().any(|line| line == digest), "{}: {digest}\nhost:\n{expected}", board.name);
+        gates::without_doubles(&image::of(board, "flight")?)?;
         println!("{:<12} {}", board.name, output.trim_end().replace('\n', "; "));
         flown += 1;
     }
     let board = boards::by_name(boards::DEFAULT)?;
+    // The gate closes on a program that builds a law itself.
+    ensure!(gates::without_doubles(&image::of(&board, "digest")?).is_err(), "the gate let `digest` through");
     overload_is_counted(&board)?;
     watchdog_bites(&board)?;
-    Ok(format!("a minute on {flown} boards; overload counted, watchdog bites"))
+    Ok(format!("a minute on {flown} boards, no doubles in the program; overload counted, watchdog bites"))
 }
 
 /// Ten ticks of one period and a half: ten misses, reported, and nothing hidden by the steps that follow in time.

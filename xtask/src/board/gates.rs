@@ -5,7 +5,7 @@ use super::boards::{self, Board};
 use super::image;
 use crate::elf::{self, Image, Reach};
 use crate::stages::Note;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use std::path::Path;
 
 /// The functions that `firmware/src/bin/step.rs` exports.
@@ -70,16 +70,27 @@ fn complaints(image: &Path, root: &str) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
+/// Passes if a whole program, and not its step alone, holds no function that computes with doubles.
+pub(crate) fn without_doubles(program: &Path) -> Result<()> {
+    let functions = elf::functions(&Image::read(program)?)?;
+    let names = functions.values().flat_map(|function| &function.names);
+    let doubles: Vec<&str> = names.map(String::as_str).filter(|name| forbidden(name) == Some(DOUBLES)).collect();
+    ensure!(doubles.is_empty(), "{} computes with doubles: {}", program.display(), doubles.join(" "));
+    Ok(())
+}
+
+const DOUBLES: &str = "computes in double precision";
+
 /// Why the function of that name must not be reached, if so.
 fn forbidden(name: &str) -> Option<&'static str> {
     // Run-time library of Arm: `__aeabi_dadd`, `__aeabi_f2d`; of GCC: `__adddf3`, `__fixdfsi`, `__extendsfdf2`.
     const DOUBLE: [&str; 8] = ["df3", "df2", "dfsi", "dfdi", "sidf", "didf", "sfdf", "dfsf"];
     let arm = name.strip_prefix("__aeabi_");
     if arm.is_some_and(|rest| rest.starts_with('d') || rest.starts_with("cd") || rest.ends_with("2d")) {
-        return Some("computes in double precision");
+        return Some(DOUBLES);
     }
     if name.starts_with("__") && DOUBLE.iter().any(|part| name.contains(part)) {
-        return Some("computes in double precision");
+        return Some(DOUBLES);
     }
     let allocates = ["__rust_alloc", "__rust_realloc", "__rustc", "_RNvC", "GlobalAlloc"];
     if name.contains("alloc") && allocates.iter().any(|part| name.contains(part)) {

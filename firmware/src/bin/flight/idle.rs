@@ -1,10 +1,10 @@
 //! The idle loop: telemetry, the log, and the report at the end.
 
+use crate::core_of_board::{self, TIMER_HZ};
 use crate::target::Axis;
 use crate::tick::COUNTS;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
-use gimbal_firmware::cases::MINUTE;
-use gimbal_firmware::{board, info, warning};
+use gimbal_firmware::{board, info, minute, warning};
 use gimbal_servo::{Digest, Faults, Output};
 use heapless::spsc::Consumer;
 
@@ -19,19 +19,19 @@ const TELEMETRY: u32 = 10_000;
 pub(crate) fn run(mut outputs: Consumer<'static, Output<Axis>>) -> Result<(), &'static str> {
     let mut log = Log { steps: 0, faults: Faults::NONE, missed: 0 };
     let mut digest = Digest::default();
-    info!("board {}, {} steps", board::NAME, MINUTE.steps);
-    while log.steps < MINUTE.steps {
+    info!("board {}, {} steps", board::NAME, minute::STEPS);
+    while log.steps < minute::STEPS {
         while let Some(output) = outputs.dequeue() {
             digest.add_output(&output);
             log.note(&output);
         }
-        if log.steps < MINUTE.steps {
-            cortex_m::asm::wfi();
+        if log.steps < minute::STEPS {
+            core_of_board::sleep();
         }
     }
     let number = if cfg!(target_abi = "eabihf") { "f32" } else { "fixed" };
     info!("flight {} {} steps {:016x}", number, log.steps, digest.value());
-    let microseconds = |count: &AtomicU32| u64::from(count.load(Relaxed)) * 1_000_000 / u64::from(board::COUNTER_HZ);
+    let microseconds = |count: &AtomicU32| u64::from(count.load(Relaxed)) * 1_000_000 / u64::from(TIMER_HZ);
     info!("longest tick {} us, latest start {} us", microseconds(&COUNTS.longest), microseconds(&COUNTS.latest));
     let [missed, lost] = [&COUNTS.missed, &COUNTS.lost].map(|count| count.load(Relaxed));
     let without_row = COUNTS.without_row.load(Relaxed);

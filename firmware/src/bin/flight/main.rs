@@ -1,53 +1,47 @@
 //! The flight computer's program: one minute of simulated flight at 1 kHz, each step in a timer's interrupt.
 //!
 //! ```text
-//! SysTick, 1 kHz, highest priority    tick.rs      step, deadline, watchdog
+//! timer, 1 kHz, highest priority      tick.rs      step, deadline, watchdog
 //!    asks the sensor for a row          |  ^
 //! receive interrupt, lower priority   sensor.rs    puts the row into a queue for the next tick
 //!    telemetry queue                    v
 //! idle loop                           idle.rs      digest of all outputs, report
 //! ```
 //!
-//! On the host it prints the digest that every board must reach.
+//! What the core has of its own, timer and interrupts, is in `core_arm.rs` and `core_riscv.rs`. The law comes from an image
+//! that the build script made, and nothing here computes with doubles. On the host it prints the digest that every board must reach.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[cfg(all(target_os = "none", target_arch = "arm"))]
+#[cfg_attr(target_arch = "arm", path = "core_arm.rs")]
+#[cfg_attr(target_arch = "riscv32", path = "core_riscv.rs")]
+#[cfg(target_os = "none")]
+mod core_of_board;
+#[cfg(target_os = "none")]
 mod idle;
-#[cfg(all(target_os = "none", target_arch = "arm"))]
+#[cfg(target_os = "none")]
 mod sensor;
-#[cfg(all(target_os = "none", target_arch = "arm"))]
+#[cfg(target_os = "none")]
 mod tick;
-#[cfg(all(target_os = "none", target_arch = "arm"))]
+#[cfg(target_os = "none")]
 mod watchdog;
 
-#[cfg(all(target_os = "none", target_arch = "arm"))]
+#[cfg(target_os = "none")]
 gimbal_firmware::program!(target::run);
-
-/// The interrupts are those of Cortex-M.
-#[cfg(all(target_os = "none", not(target_arch = "arm")))]
-mod elsewhere {
-    gimbal_firmware::program!(run);
-
-    fn run() -> Result<(), &'static str> {
-        Err("flight runs on Cortex-M alone")
-    }
-}
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    use gimbal_firmware::cases::MINUTE;
+    use gimbal_firmware::minute;
 
-    println!("flight f32 {} steps {:016x}", MINUTE.steps, MINUTE.output_digest::<f32>());
-    println!("flight fixed {} steps {:016x}", MINUTE.steps, MINUTE.output_digest::<gimbal_servo::Fixed>());
+    println!("flight f32 {} steps {:016x}", minute::STEPS, minute::digest::<f32>());
+    println!("flight fixed {} steps {:016x}", minute::STEPS, minute::digest::<gimbal_servo::Fixed>());
 }
 
-#[cfg(all(target_os = "none", target_arch = "arm"))]
+#[cfg(target_os = "none")]
 mod target {
+    use crate::core_of_board::{self, singleton};
     use crate::{idle, sensor, tick, watchdog};
-    use cortex_m::Peripherals;
-    use cortex_m::singleton;
-    use gimbal_firmware::cases::MINUTE;
+    use gimbal_firmware::minute::Flown;
     use gimbal_servo::{Law, Output};
     use heapless::spsc::Queue;
 
@@ -58,16 +52,17 @@ mod target {
 
     pub(crate) fn run() -> Result<(), &'static str> {
         const TAKEN: &str = "started twice";
-        let peripherals = Peripherals::take().ok_or(TAKEN)?;
         // In memory of its own: the law is too large to be handed around on the stack.
-        let built = singleton!(: Option<Law<Axis>> = None).ok_or(TAKEN)?;
-        *built = (MINUTE.config)().build::<Axis>().ok();
-        let law: &'static Law<Axis> = built.as_ref().ok_or("the law cannot be built")?;
+        let law = singleton!(: Law<Axis> = Law::BLANK).ok_or(TAKEN)?;
+        law.read_image(Axis::IMAGE).map_err(|_| "the law's image is not one of this library")?;
         let (row_in, row_out) = singleton!(: Rows = Queue::new()).ok_or(TAKEN)?.split();
         let (output_in, output_out) = singleton!(: Outputs = Queue::new()).ok_or(TAKEN)?.split();
 
-        sensor::start(law, row_in);
-        tick::start(law, row_out, output_in, watchdog::Watchdog::start(), peripherals);
+        let tick = tick::Tick::new(law, row_out, output_in, watchdog::Watchdog::start());
+        tick::hand_over(singleton!(: Option<tick::Tick> = None).ok_or(TAKEN)?.insert(tick));
+        sensor::hand_over(row_in);
+        core_of_board::start().ok_or("the board has no timer")?;
+        sensor::trigger();
         idle::run(output_out)
     }
 }

@@ -4,37 +4,22 @@
 //! eight words of 16 bits make a row, the port's whole FIFO, and half of them raise its receive interrupt. The sensor
 //! itself is played by the port's own loopback: the tick sends the eight words that an asked sensor would send. On a
 //! board of yours loopback is off, and the tick sends what makes the sensor answer. Boards without such a port pend
-//! interrupt 0 instead, and the words stay in memory.
+//! an interrupt instead, and the words stay in memory.
 
-// An interrupt's number is a promise to the hardware, enabling one is too, and registers of a peripheral are addresses.
+// Registers of a peripheral are addresses.
 #![allow(unsafe_code)]
 
+use crate::core_of_board;
 use crate::target::Axis;
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
-use cortex_m::interrupt::InterruptNumber;
-use cortex_m::peripheral::NVIC;
-use cortex_m_rt::exception;
 use critical_section::Mutex;
-use gimbal_firmware::board;
-use gimbal_firmware::cases::MINUTE;
-use gimbal_servo::{Input, Law, Number};
+use gimbal_firmware::{board, minute};
+use gimbal_servo::{Input, Number};
 use heapless::spsc::Producer;
-
-/// The port's receive interrupt, or the first one.
-#[derive(Clone, Copy)]
-pub(crate) struct Receive;
-
-// SAFETY: the board's file gives the number; every core has an interrupt 0.
-unsafe impl InterruptNumber for Receive {
-    fn number(self) -> u16 {
-        board::SENSOR.map_or(0, |(_, interrupt)| interrupt)
-    }
-}
 
 /// What the interrupt owns.
 struct Sensor {
-    law: &'static Law<Axis>,
     rows: Producer<'static, Input<Axis>>,
     next: u32,
     /// What has come in of the row, in halves of its signals, and how many.
@@ -51,15 +36,11 @@ static SENSOR: Mutex<RefCell<Option<Sensor>>> = Mutex::new(RefCell::new(None));
 /// sent by the tick.
 static ANSWER: [AtomicU32; 4] = [const { AtomicU32::new(0) }; 4];
 
-/// Hands the interrupt its end of the queue and enables it.
-pub(crate) fn start(law: &'static Law<Axis>, rows: Producer<'static, Input<Axis>>) {
-    Sensor::answer(law, 0);
-    critical_section::with(|cs| {
-        SENSOR.replace(cs, Some(Sensor { law, rows, next: 0, words: [0; WORDS], received: 0 }))
-    });
+/// Hands the interrupt its end of the queue.
+pub(crate) fn hand_over(rows: Producer<'static, Input<Axis>>) {
+    Sensor::answer(0);
+    critical_section::with(|cs| SENSOR.replace(cs, Some(Sensor { rows, next: 0, words: [0; WORDS], received: 0 })));
     port::start();
-    // SAFETY: no critical section relies on the interrupt being masked.
-    unsafe { NVIC::unmask(Receive) };
 }
 
 /// Asks the sensor for a row.
@@ -68,7 +49,7 @@ pub(crate) fn trigger() {
         port::send(word);
     }
     if board::SENSOR.is_none() {
-        NVIC::pend(Receive);
+        core_of_board::pend_receive();
     }
 }
 
@@ -83,9 +64,8 @@ fn halves(bits: u32) -> [u16; 2] {
     [u16::from_le_bytes([a, b]), u16::from_le_bytes([c, d])]
 }
 
-/// The interrupts' handler; the sensor's is the only one enabled.
-#[exception]
-unsafe fn DefaultHandler(_number: i16) {
+/// The interrupt.
+pub(crate) fn receive() {
     // Taken out and put back, so that the tick waits for neither the row nor the queue.
     let Some(mut sensor) = critical_section::with(|cs| SENSOR.take(cs)) else { return };
     sensor.receive();
@@ -106,25 +86,17 @@ impl Sensor {
         self.received = 0;
         let [x0, x1, y0, y1, z0, z1, rate0, rate1] = self.words;
         let signal = |low: u16, high: u16| <Axis as Number>::from_bits(u32::from(low) | u32::from(high) << 16);
-        let row = Input {
-            accel_x_mps2: signal(x0, x1),
-            accel_y_mps2: signal(y0, y1),
-            accel_z_mps2: signal(z0, z1),
-            vehicle_rate_radps: signal(rate0, rate1),
-            ..Input::default()
-        };
+        let row = minute::row([signal(x0, x1), signal(y0, y1), signal(z0, z1), signal(rate0, rate1)]);
         // A full queue means that the ticks have stopped; the row is lost, and the tick will find one missing.
-        if self.next < MINUTE.steps && self.rows.enqueue(row).is_ok() {
+        if self.next < minute::STEPS && self.rows.enqueue(row).is_ok() {
             self.next += 1;
-            Self::answer(self.law, self.next);
+            Self::answer(self.next);
         }
     }
 
     /// Prepares row `k` of the committed flight.
-    fn answer(law: &Law<Axis>, k: u32) {
-        let row = MINUTE.input(law, k);
-        let signals = [row.accel_x_mps2, row.accel_y_mps2, row.accel_z_mps2, row.vehicle_rate_radps];
-        for (answer, signal) in ANSWER.iter().zip(signals) {
+    fn answer(k: u32) {
+        for (answer, signal) in ANSWER.iter().zip(minute::signals::<Axis>(k)) {
             answer.store(Number::to_bits(signal), Relaxed);
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! # Timing contract
 //!
-//! 1. `SysTick` runs at 1 kHz and above every other interrupt: nothing delays the tick but a critical section, and those
-//!    are a few instructions long.
+//! 1. The timer runs at 1 kHz and, on Cortex-M, above every other interrupt: nothing delays the tick but a critical
+//!    section, and those are a few instructions long.
 //! 2. A tick takes one row from the queue, does one step and puts one output into the telemetry queue. It never waits,
 //!    and its longest path is bounded: the step has no unbounded loop, both queues are lock-free.
 //! 3. Its deadline is the next tick. One that runs into it is counted as missed, and the watchdog is not fed.
@@ -11,26 +11,18 @@
 //!
 //! `cargo xtask test` (stage `target-flight`) holds all four true, on the emulated boards and with a forced overload.
 
-// Priorities are part of the contract; setting them may break a critical section that relies on them, and none does.
-#![allow(unsafe_code)]
-
+use crate::core_of_board::{TIMER_HZ, next_tick_waits, since_tick};
 use crate::sensor;
 use crate::target::Axis;
 use crate::watchdog::Watchdog;
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
-use cortex_m::Peripherals;
-use cortex_m::peripheral::scb::SystemHandler;
-use cortex_m::peripheral::syst::SystClkSource;
-use cortex_m::peripheral::{SCB, SYST};
-use cortex_m_rt::exception;
 use critical_section::Mutex;
-use gimbal_firmware::board::COUNTER_HZ;
 use gimbal_servo::{Input, Law, Output, State};
 use heapless::spsc::{Consumer, Producer};
 
-const TICK_HZ: u32 = 1_000;
-const RELOAD: u32 = COUNTER_HZ / TICK_HZ - 1;
+pub(crate) const TICK_HZ: u32 = 1_000;
+const PERIOD: u32 = TIMER_HZ / TICK_HZ;
 
 /// What the ticks have counted so far; written by the tick alone.
 #[derive(Debug)]
@@ -43,9 +35,9 @@ pub(crate) struct Counts {
     pub(crate) without_row: AtomicU32,
     /// Outputs for which the telemetry queue had no room.
     pub(crate) lost: AtomicU32,
-    /// Longest tick that met its deadline [counts of `SysTick`].
+    /// Longest tick that met its deadline [counts of the timer].
     pub(crate) longest: AtomicU32,
-    /// Latest start after the timer's zero [counts of `SysTick`].
+    /// Latest start after the timer's zero [counts of the timer].
     pub(crate) latest: AtomicU32,
 }
 
@@ -59,7 +51,7 @@ pub(crate) static COUNTS: Counts = Counts {
 };
 
 /// What the tick owns.
-struct Tick {
+pub(crate) struct Tick {
     law: &'static Law<Axis>,
     state: State<Axis>,
     rows: Consumer<'static, Input<Axis>>,
@@ -69,49 +61,33 @@ struct Tick {
     number: u32,
 }
 
-static TICK: Mutex<RefCell<Option<Tick>>> = Mutex::new(RefCell::new(None));
+static TICK: Mutex<RefCell<Option<&'static mut Tick>>> = Mutex::new(RefCell::new(None));
 
-/// Hands the tick what it owns and starts the timer.
-pub(crate) fn start(
-    law: &'static Law<Axis>,
-    rows: Consumer<'static, Input<Axis>>,
-    outputs: Producer<'static, Output<Axis>>,
-    watchdog: Watchdog,
-    mut peripherals: Peripherals,
-) {
-    let tick = Tick { law, state: law.start(), rows, outputs, row: None, watchdog, number: 0 };
+/// Hands the interrupt what it owns.
+pub(crate) fn hand_over(tick: &'static mut Tick) {
     critical_section::with(|cs| TICK.replace(cs, Some(tick)));
-    // SAFETY: no critical section relies on a priority.
-    unsafe { peripherals.SCB.set_priority(SystemHandler::SysTick, 0) };
-    // SAFETY: the same; only interrupt 0 is used, and the tick is above it.
-    unsafe { peripherals.NVIC.set_priority(sensor::Receive, 0x80) };
-    let mut timer = peripherals.SYST;
-    timer.set_clock_source(SystClkSource::Core);
-    timer.set_reload(RELOAD);
-    timer.clear_current();
-    timer.enable_counter();
-    timer.enable_interrupt();
-    sensor::trigger();
 }
 
-#[exception]
-fn SysTick() {
-    static mut OWNED: Option<Tick> = None;
-    if OWNED.is_none() {
-        *OWNED = critical_section::with(|cs| TICK.take(cs));
-    }
-    if let Some(tick) = OWNED {
-        tick.run();
-    }
+/// The timer's interrupt.
+pub(crate) fn tick() {
+    let Some(tick) = critical_section::with(|cs| TICK.take(cs)) else { return };
+    tick.run();
+    critical_section::with(|cs| TICK.replace(cs, Some(tick)));
 }
 
 impl Tick {
+    pub(crate) fn new(
+        law: &'static Law<Axis>,
+        rows: Consumer<'static, Input<Axis>>,
+        outputs: Producer<'static, Output<Axis>>,
+        watchdog: Watchdog,
+    ) -> Self {
+        Self { law, state: law.start(), rows, outputs, row: None, watchdog, number: 0 }
+    }
+
     fn run(&mut self) {
-        let start = SYST::get_current();
-        // The first tick has just taken over what it owns, which the others need not.
-        if self.number > 0 {
-            raise(&COUNTS.latest, RELOAD - start);
-        }
+        raise(&COUNTS.latest, since_tick());
+        let start = since_tick();
         match self.rows.dequeue() {
             Some(row) => self.row = Some(row),
             None => add_one(&COUNTS.without_row),
@@ -128,11 +104,10 @@ impl Tick {
         COUNTS.ticks.store(self.number, Relaxed);
         self.overload();
 
-        // The timer has passed zero again: the next tick already waits.
-        if SCB::is_pendst_pending() {
+        if next_tick_waits() {
             add_one(&COUNTS.missed);
         } else {
-            raise(&COUNTS.longest, start - SYST::get_current());
+            raise(&COUNTS.longest, since_tick() - start);
             self.watchdog.feed();
         }
     }
@@ -143,11 +118,11 @@ impl Tick {
         let too_long = (cfg!(feature = "overload") && (FIRST..FIRST + 10).contains(&self.number))
             || (cfg!(feature = "hang") && self.number >= FIRST);
         if too_long {
-            let mut last = SYST::get_current();
-            let mut passed = 0;
-            while passed < RELOAD + RELOAD / 2 {
-                let now = SYST::get_current();
-                passed += if now <= last { last - now } else { last + RELOAD + 1 - now };
+            let (mut last, mut passed) = (since_tick(), 0);
+            while passed < PERIOD + PERIOD / 2 {
+                let now = since_tick();
+                // On Cortex-M the timer starts again while the tick goes on.
+                passed += if now >= last { now - last } else { now + PERIOD - last };
                 last = now;
             }
         }

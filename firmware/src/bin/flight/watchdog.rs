@@ -7,9 +7,7 @@
 // Registers of a peripheral are addresses.
 #![allow(unsafe_code)]
 
-use cortex_m_rt::exception;
-use gimbal_firmware::semihosting::process;
-use gimbal_firmware::{board, fatal};
+use gimbal_firmware::board;
 
 /// A running watchdog, or none.
 #[derive(Debug)]
@@ -46,8 +44,9 @@ impl Watchdog {
 }
 
 /// The watchdog was not fed: a flight computer would go to its safe state here.
-#[exception]
+#[cfg(target_arch = "arm")]
+#[cortex_m_rt::exception]
 unsafe fn NonMaskableInt() -> ! {
-    fatal!("watchdog: not fed for {} ms", PATIENCE / (board::COUNTER_HZ / 1_000));
-    process::exit(1)
+    gimbal_firmware::fatal!("watchdog: not fed for {} ms", PATIENCE / (board::COUNTER_HZ / 1_000));
+    gimbal_firmware::semihosting::process::exit(1)
 }
