@@ -165,7 +165,8 @@ fn write_law(out: &Path) -> Result<(), Box<dyn Error>> {
         .zip(scales)
         .map(|(count, scale)| (count * 2.0_f64.powi(31 + 16 - scale)).round().to_string())
         .collect();
-    let [accel, rate] = COUNTS.map(|count| count as f32);
+    let [accel, rate] = COUNTS.map(|count| count.to_string().parse::<f32>());
+    let (accel, rate) = (accel?, rate?);
     let text = format!(
         "/// What a count is to the law.\n#[expect(clippy::unreadable_literal, reason = \"made by the build script\")]\n\
          const F32_COUNTS: [f32; 2] = [{accel:?}, {rate:?}];\n/// Likewise.\n\
