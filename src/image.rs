@@ -22,7 +22,7 @@
 //! ```
 //!
 //! Little-endian. Signals, coefficients, limits, shifts and exponents are 4 bytes; sums of products 4 in f32 and 8 in fixed
-//! point; doubles, which only results in SI use, 8; flags 1. The order of the fields is that of the lists [`stored!`] in
+//! point; doubles, which only results in SI use, 8; flags 1. The order of the fields is that of the lists `stored!` in
 //! the sources; a changed list, or a change of what a field means, is a new version.
 
 use core::fmt;

@@ -4,7 +4,7 @@
 //! A count is 1 mm/s2 of acceleration and 0.001 deg/s of rate.
 
 use crate::cases::{FLIGHT, counts};
-use gimbal_servo::{Config, Fixed, Input, Law, Number};
+use gimbal_servo::{Config, Digest, Fixed, Input, Number};
 
 include!(concat!(env!("OUT_DIR"), "/minute.rs"));
 
@@ -42,7 +42,7 @@ impl Flown for Fixed {
 
     #[expect(clippy::cast_possible_truncation, reason = "the law's full scales hold every reading")]
     fn signal(counts: i32, factor: i32) -> Fixed {
-        Fixed::from_raw((i64::from(counts) * i64::from(factor) >> 16) as i32)
+        Fixed::from_raw(((i64::from(counts) * i64::from(factor)) >> 16) as i32)
     }
 }
 
@@ -70,7 +70,7 @@ pub fn row<N: Flown>([x, y, z, rate]: [N; 4]) -> Input<N> {
 #[must_use]
 pub fn digest<N: Flown>() -> u64 {
     let Ok(law) = config().build::<N>() else { return 0 };
-    let (mut state, mut digest): (_, gimbal_servo::Digest) = (Law::start(&law), Default::default());
+    let (mut state, mut digest) = (law.start(), Digest::default());
     for k in 0..STEPS {
         digest.add_output(&law.step(&mut state, row(signals(k))));
     }
