@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use gimbal_servo::Digest;
+
 use crate::link::{Link, LinkError};
 
 /// The emulator's program.
@@ -51,6 +53,7 @@ impl Drop for Running {
 pub struct Emulated {
     running: Running,
     link: Box<dyn Link>,
+    image: u64,
 }
 
 /// Version of the emulator, if it is installed.
@@ -113,6 +116,8 @@ impl Emulated {
         let mend = "`gimbal doctor` says what is missing; `--target host` needs no emulator";
         let fail = |what: &str, error: &dyn std::fmt::Display| LinkError::new(format!("{what}: {error}"), mend);
         let image = image.canonicalize().map_err(|error| fail(&image.display().to_string(), &error))?;
+        let mut digest = Digest::default();
+        digest.add(&std::fs::read(&image).map_err(|error| fail(&image.display().to_string(), &error))?);
         let folder =
             tempfile::Builder::new().prefix("gimbal-hil-").tempdir().map_err(|error| fail("no folder", &error))?;
         let mut command = Command::new(PROGRAM);
@@ -143,7 +148,7 @@ impl Emulated {
                 (child, Box::new(Stream::local(socket, "the emulated serial port")?))
             }
         };
-        Ok(Self { running: Running { child, folder }, link })
+        Ok(Self { running: Running { child, folder }, link, image: digest.value() })
     }
 
     /// Number of the emulator's process.
@@ -200,5 +205,9 @@ impl Link for Emulated {
         // Dropped with the emulator.
         let _ = self.running.folder.path();
         format!("mps2-an386 in {version}, {}", self.link.describe())
+    }
+
+    fn image(&self) -> Option<u64> {
+        Some(self.image)
     }
 }

@@ -12,6 +12,7 @@
 #![forbid(unsafe_code)]
 
 pub mod emulator;
+mod exchange;
 mod fault;
 pub mod judge;
 pub mod link;
@@ -26,5 +27,6 @@ pub mod scenario;
 mod sensor;
 mod station;
 
+pub use exchange::Patience;
 pub use platform::{Moment, Platform};
 pub use station::{Board, StationError};

@@ -12,7 +12,7 @@ use std::time::Duration;
 #[cfg(unix)]
 pub use fifo::Fifo;
 pub use host::Host;
-pub use serial::{Serial, least_baud};
+pub use serial::{PROGRAM_BAUD, Serial, least_baud};
 pub use stream::Stream;
 
 /// A link has failed: what, and what mends it.
@@ -47,6 +47,11 @@ pub trait Link {
 
     /// What it is, for reports.
     fn describe(&self) -> String;
+
+    /// Digest of the program at its other end (64-bit FNV-1a over the file), where it is known.
+    fn image(&self) -> Option<u64> {
+        None
+    }
 }
 
 /// Appends what one read brings; a wait that ends without a byte brings none. False at the end of the stream.

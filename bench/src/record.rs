@@ -124,22 +124,30 @@ impl Record {
         let mut bytes = Vec::new();
         let read = File::open(path).and_then(|mut file| file.read_to_end(&mut bytes));
         read.map_err(|error| format!("{}: cannot be read: {error}", path.display()))?;
+        Self::read(&bytes, &path.display().to_string())
+    }
+
+    /// Reads the bytes of a record, or as much of them as is whole.
+    ///
+    /// # Errors
+    /// They are no record.
+    pub fn read(bytes: &[u8], name: &str) -> Result<Self, String> {
         let Some(mut rest) = bytes.strip_prefix(MAGIC.as_slice()) else {
-            return Err(format!("{}: is no record; `gimbal hil --record FILE` writes one", path.display()));
+            return Err(format!("{name}: is no record; `gimbal hil --record FILE` writes one"));
         };
         let mut entries = Vec::new();
         let mut cut = None;
         while !rest.is_empty() {
             let Some((entry, after)) = entry(rest) else {
                 let at = bytes.len() - rest.len();
-                cut = Some(format!("{}: ends within an entry at byte {at}; what comes before is used", path.display()));
+                cut = Some(format!("{name}: ends within an entry at byte {at}; what comes before is used"));
                 break;
             };
             entries.push(entry);
             rest = after;
         }
         if cut.is_none() && entries.last().is_none_or(|entry: &Entry| entry.kind != b'E') {
-            cut = Some(format!("{}: the run ended before its time", path.display()));
+            cut = Some(format!("{name}: the run ended before its time"));
         }
         Ok(Self { entries, cut })
     }

@@ -36,7 +36,7 @@ pub fn replay(
         while let Some(answer) = entries.next_if(|entry| entry.kind == b'U') {
             expected.extend_from_slice(&answer.content);
         }
-        let answer = board.replay(entry.tick, &entry.content, expected.len())?;
+        let answer = board.exchange.replay(entry.tick, &entry.content, expected.len())?;
         replayed.exchanges += 1;
         replayed.bytes += expected.len() as u64;
         if answer != expected {

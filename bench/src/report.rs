@@ -18,6 +18,7 @@ pub fn json(outcome: &Outcome) -> Value {
         "schema": "gimbal-hil/1",
         "scenario": outcome.scenario.name,
         "about": outcome.scenario.about,
+        "started": started(outcome),
         "verdict": outcome.verdict.name(),
         "error": outcome.error.as_ref().map(ToString::to_string),
         "requirements": outcome.requirements.iter().map(requirement).collect::<Vec<_>>(),
@@ -56,10 +57,18 @@ pub fn json(outcome: &Outcome) -> Value {
             "board_build": hex(outcome.builds[1]),
             "scenario_model": hex(outcome.models[0]),
             "board_model": hex(outcome.models[1]),
+            "board_image": outcome.image.map(hex),
+            "scenario": hex(outcome.text),
             "seed": outcome.scenario.seed,
         },
         "digest": hex(outcome.digest),
     })
+}
+
+/// When the run began, UTC.
+#[must_use]
+pub fn started(outcome: &Outcome) -> String {
+    humantime::format_rfc3339_seconds(outcome.started).to_string()
 }
 
 fn requirement(judged: &Judged) -> Value {
@@ -76,8 +85,9 @@ pub fn junit(outcomes: &[Outcome]) -> String {
         let differs = outcome.host_equals_board == Some(false);
         let _ = writeln!(
             xml,
-            "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3}\">",
+            "  <testsuite name=\"{}\" timestamp=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3}\">",
             escaped(&outcome.scenario.name),
+            started(outcome).trim_end_matches('Z'),
             outcome.requirements.len() + 2,
             failed + usize::from(differs),
             u8::from(aborted.is_some()),

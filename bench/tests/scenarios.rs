@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use gimbal_bench::Board;
 use gimbal_bench::link::{Host, Link, LinkError};
 use gimbal_bench::record::{Record, Recorder};
 use gimbal_bench::replay::replay;
 use gimbal_bench::report;
-use gimbal_bench::run::{Live, Outcome, Pace, Verdict, Watch, run};
+use gimbal_bench::run::{Live, Outcome, Pace, Settings, Verdict, Watch, run};
 use gimbal_bench::scenario::{SHIPPED, Scenario};
+use gimbal_bench::{Board, Patience};
 
 /// Watches to the end, or to a tick.
 struct Until(u32);
@@ -21,7 +21,8 @@ impl Watch for Until {
 
 fn fly(scenario: &Scenario, link: Box<dyn Link>, record: Option<&Path>, until: u32) -> Outcome {
     let recorder = record.map(|path| Recorder::create(path).expect("made"));
-    run(scenario, link, Pace::Lockstep, recorder, &mut Until(until)).expect("flies")
+    run(scenario, link, Settings { pace: Pace::Lockstep, patience: Patience::default() }, recorder, &mut Until(until))
+        .expect("flies")
 }
 
 #[test]
@@ -52,7 +53,7 @@ fn contract_a_seed_gives_the_same_record_and_the_record_the_same_answers() {
 
     let record = Record::open(&first).expect("a record");
     assert_eq!(record.cut, None);
-    let mut board = Board::start(Box::new(Host::new())).expect("answers");
+    let mut board = Board::start(Box::new(Host::new()), Patience::default()).expect("answers");
     let replayed = replay(&mut board, &record, |_| false).expect("replays");
     assert_eq!((replayed.difference, replayed.bytes), (None, outcome.link.bytes[1]));
 }
@@ -89,7 +90,7 @@ fn contract_a_run_that_breaks_off_is_reported_as_far_as_it_went() {
     assert!(report::junit(&[outcome]).contains("<error message=\"the cable is cut; mend it\"/>"));
     let record = Record::open(&path).expect("a record");
     assert!(record.cut.is_some());
-    let mut board = Board::start(Box::new(Host::new())).expect("answers");
+    let mut board = Board::start(Box::new(Host::new()), Patience::default()).expect("answers");
     assert_eq!(replay(&mut board, &record, |_| false).expect("replays").difference, None);
     let stopped = fly(&scenario, Box::new(Host::new()), None, 200);
     assert_eq!((stopped.verdict, stopped.ticks[0]), (Verdict::Aborted, 201));

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use clap::Parser;
 use gimbal_bench::emulator;
-use gimbal_bench::link::{Serial, least_baud};
+use gimbal_bench::link::{PROGRAM_BAUD, Serial, least_baud};
 use serde_json::json;
 
 use crate::exit::Failure;
@@ -17,9 +17,9 @@ pub(crate) struct Args {
     /// A serial port to look at
     #[arg(long, value_name = "DEVICE")]
     port: Option<String>,
-    /// Its baud rate
-    #[arg(long, value_name = "N", default_value_t = 2_000_000)]
-    baud: u32,
+    /// Its baud rate, if it is to fly in real time
+    #[arg(long, value_name = "N", requires = "port")]
+    baud: Option<u32>,
     /// Print the result as JSON
     #[arg(long)]
     json: bool,
@@ -40,7 +40,7 @@ pub(crate) fn doctor(args: &Args) -> Result<(), Failure> {
     ];
     if let Some(port) = &args.port {
         findings.push(Finding { name: "baud rate", state: baud(args.baud) });
-        findings.push(Finding { name: "port", state: port_state(port, args.baud) });
+        findings.push(Finding { name: "port", state: port_state(port, args.baud.unwrap_or(PROGRAM_BAUD)) });
     }
     let lines: Vec<String> = findings
         .iter()
@@ -102,8 +102,11 @@ fn compiler() -> State {
     missing(format!("no core library for {target}"), mend)
 }
 
-fn baud(baud: u32) -> State {
+fn baud(baud: Option<u32>) -> State {
     let least = least_baud(1e-3);
+    let Some(baud) = baud else {
+        return Ok(format!("{PROGRAM_BAUD}, that of the program `hil`, for lockstep; real time takes {least} or more"));
+    };
     if baud >= least {
         return Ok(format!("{baud}; one exchange a millisecond takes {least}"));
     }

@@ -12,7 +12,7 @@ use clap::{Parser, Subcommand};
 use gimbal_bench::record::{Record, Recorder};
 use gimbal_bench::replay::replay;
 use gimbal_bench::report as told;
-use gimbal_bench::run::{Outcome, Pace, Verdict, run};
+use gimbal_bench::run::{Outcome, Pace, Settings, Verdict, run};
 use gimbal_bench::scenario::{SHIPPED, Scenario};
 use gimbal_bench::{Board, StationError};
 use gimbal_log::AtomicFile;
@@ -109,13 +109,14 @@ fn fly(options: &Fly) -> Result<(), Failure> {
     if options.realtime {
         options.place.refuse_slow(1e-3)?;
     }
+    let settings = Settings { pace, patience: options.place.patience() };
     let place = options.place.ready()?;
     let mut outcomes = Vec::new();
     for scenario in &scenarios {
         let recorder = recorder(options, all, &scenario.name)?;
         let mut live = Live::new(scenario);
         let link = place.link()?;
-        let mut outcome = run(scenario, link, pace, recorder, &mut live).map_err(failure)?;
+        let mut outcome = run(scenario, link, settings, recorder, &mut live).map_err(failure)?;
         live.finish();
         if interrupt::raised() && outcome.error.is_none() {
             outcome.error = Some(StationError::Interrupted);
@@ -213,7 +214,7 @@ fn run_again(options: &Again) -> Result<(), Failure> {
         eprintln!("note: {cut}");
     }
     let link = options.place.ready()?.link()?;
-    let mut board = Board::start(link).map_err(failure)?;
+    let mut board = Board::start(link, options.place.patience()).map_err(failure)?;
     let replayed = replay(&mut board, &record, |_| interrupt::raised()).map_err(failure)?;
     let scenario =
         record.header().and_then(|header| header["scenario"].as_str().map(str::to_owned)).unwrap_or_default();

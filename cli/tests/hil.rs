@@ -188,11 +188,12 @@ fn contract_a_silent_computer_is_not_waited_for_for_ever() {
     bench.write("short.toml", SHORT);
     let served = serve(Ends::Silent(60_000));
     let begun = Instant::now();
-    let output = bench.run(&["hil", "short.toml", "--connect", &served.address]);
+    let output = bench.run(&["hil", "short.toml", "--connect", &served.address, "--patience-s", "1.5"]);
     let told = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(3), "{told}");
-    assert!(told.contains("no answer for 3000 ms"), "{told}");
-    assert!(begun.elapsed() < Duration::from_secs(30));
+    assert!(told.contains("no answer in 1.5 s") && told.contains("--patience-s"), "{told}");
+    assert!(begun.elapsed() < Duration::from_secs(20));
+    assert!(bench.fail(2, &["hil", "--patience-s", "0"]).contains("between 0.1 and 3600"));
 }
 
 #[test]

@@ -33,6 +33,8 @@ pub(crate) struct Stepped {
 
 impl<N: Number> Axis<N> {
     /// Builds the laws of a model.
+    // A function of its own: what it takes is taken once, and the gate of the firmware's `computer` ends here.
+    #[inline(never)]
     pub(crate) fn build(values: &Values) -> Result<Self, (Outcome, u16)> {
         let wrong = |parameter| (Outcome::WrongModel, parameter);
         let (config, settings) = parameters::model(values).map_err(wrong)?;

@@ -8,6 +8,8 @@ use serialport::SerialPort;
 
 use super::{Link, LinkError, read_once};
 
+/// Baud rate of the firmware's program `hil` [1/s].
+pub const PROGRAM_BAUD: u32 = 1_000_000;
 /// Bits of a byte on the line: start, eight, stop.
 const BITS: f64 = 10.0;
 /// Share of a period that the line may take: the rest is the computer's.

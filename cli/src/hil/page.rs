@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use gimbal_bench::report::value;
+use gimbal_bench::report::{started, value};
 use gimbal_bench::run::{Outcome, Pace, Verdict};
 
 use super::live::Live;
@@ -14,7 +14,12 @@ table{border-collapse:collapse;width:100%;font-size:14px;margin:.6em 0}th,td{bor
 padding:.35em .5em;text-align:left;vertical-align:top}th{border-bottom:2px solid #222}td.bad{background:#deccA0;\
 font-weight:bold}.verdict{font-size:22px;font-weight:bold;border:2px solid #222;padding:.2em .6em;display:inline-block}\
 .no{background:#deccA0}figure{margin:1.5em 0}figure svg{width:100%;height:auto}code{font-size:13px}\
+.sign{margin-top:2.5em}.sign td{height:2.6em;width:34%}.sign td:nth-child(odd){width:16%;border:0}\
 pre{background:#f4f4f4;padding:1em;font-size:13px;overflow-x:auto}";
+
+/// Where people sign; the digests above say what.
+const SIGNATURE: &str = "<table class=\"sign\"><tr><td>Flown by</td><td></td><td>Judged by</td><td></td></tr>\
+<tr><td>Date, signature</td><td></td><td>Date, signature</td><td></td></tr></table>\n</body></html>\n";
 
 /// The page.
 pub(super) fn html(outcome: &Outcome, live: &Live) -> Result<String, Failure> {
@@ -23,10 +28,12 @@ pub(super) fn html(outcome: &Outcome, live: &Live) -> Result<String, Failure> {
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}: {verdict}</title>\
          <style>{STYLE}</style></head><body>\n<h1>Hardware in the loop: {name}</h1>\n<p>{about}</p>\n\
-         <p><span class=\"verdict{no}\">{verdict}</span></p>\n",
+         <p><span class=\"verdict{no}\">{verdict}</span></p>\n<p>{target}; begun {started}</p>\n",
         name = escaped(&scenario.name),
         verdict = outcome.verdict.name(),
         about = escaped(&scenario.about),
+        target = escaped(&outcome.target),
+        started = started(outcome),
     );
     if let Some(error) = &outcome.error {
         let [done, planned] = outcome.ticks;
@@ -42,7 +49,8 @@ pub(super) fn html(outcome: &Outcome, live: &Live) -> Result<String, Failure> {
     table(&mut page, "Bits raised, first time", &bits);
     table(&mut page, "Link and deadlines", &link(outcome));
     table(&mut page, "Versions and digests", &versions(outcome));
-    let _ = writeln!(page, "<h2>Scenario</h2>\n<pre>{}</pre>\n</body></html>", escaped(&scenario.text));
+    let _ = writeln!(page, "<h2>Scenario</h2>\n<pre>{}</pre>", escaped(&scenario.text));
+    page.push_str(SIGNATURE);
     Ok(page)
 }
 
@@ -109,6 +117,11 @@ fn link(outcome: &Outcome) -> Vec<(&'static str, String)> {
         ("bench: frames accepted, refused, lost", {
             format!("{}, {}, {}", outcome.link.accepted, outcome.link.refused, outcome.link.lost)
         }),
+        ("computer: frames refused, lost, late, ignored; ticks without a frame", {
+            let names = ["refused_frames", "lost_frames", "stale_frames", "ignored_frames", "held_ticks"];
+            let counts = names.map(|name| value(outcome.measures.get(format!("board_{name}").as_str()).copied()));
+            counts.join(", ")
+        }),
         ("ticks asked again", outcome.link.asked_again.to_string()),
         ("latency p50, p99, p99.9, largest", {
             let at = [0.5, 0.99, 0.999, 1.0].map(|share| microseconds(deadlines.latency_s(share)));
@@ -130,6 +143,8 @@ fn versions(outcome: &Outcome) -> Vec<(&'static str, String)> {
         ("protocol", gimbal_wire::VERSION.to_string()),
         ("flight code: bench, board", format!("{}, {}", hex(outcome.builds[0]), hex(outcome.builds[1]))),
         ("model: scenario, board", format!("{}, {}", hex(outcome.models[0]), hex(outcome.models[1]))),
+        ("program on the board", outcome.image.map_or_else(|| "-".to_owned(), hex)),
+        ("text of the scenario", hex(outcome.text)),
         ("seed", outcome.scenario.seed.to_string()),
         ("digest of all answers", hex(outcome.digest)),
     ]

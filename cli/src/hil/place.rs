@@ -1,12 +1,15 @@
 //! Where the flight computer is: emulated, in process, at a serial port, or at a socket.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Parser, ValueEnum};
+use gimbal_bench::Patience;
 use gimbal_bench::emulator::{self, Emulated, Transport};
-use gimbal_bench::link::{Host, Link, LinkError, Serial, Stream, least_baud};
+use gimbal_bench::link::{Host, Link, LinkError, PROGRAM_BAUD, Serial, Stream, least_baud};
 
 use crate::exit::Failure;
+use crate::interrupt;
 
 /// Which computer, and how to reach it.
 #[derive(Debug, Clone, Parser)]
@@ -23,12 +26,25 @@ pub(crate) struct Place {
     /// A board at a serial port
     #[arg(long, value_name = "DEVICE", conflicts_with_all = ["target", "connect"])]
     port: Option<String>,
-    /// Its baud rate
-    #[arg(long, value_name = "N", default_value_t = 2_000_000, requires = "port")]
+    /// Its baud rate; the default is that of the program `hil`
+    #[arg(long, value_name = "N", default_value_t = PROGRAM_BAUD, requires = "port")]
     baud: u32,
     /// A computer behind a socket
     #[arg(long, value_name = "HOST:PORT", conflicts_with = "target")]
     connect: Option<String>,
+    /// Longest time for an answer, before the link is given up [s]
+    #[arg(long, value_name = "S", default_value_t = 30.0, value_parser = patience_s)]
+    patience_s: f64,
+}
+
+/// A time that a person would wait.
+fn patience_s(text: &str) -> Result<f64, String> {
+    let patience_s: f64 = text.parse().map_err(|_| "is no number".to_owned())?;
+    if (0.1..=3_600.0).contains(&patience_s) {
+        Ok(patience_s)
+    } else {
+        Err("it must lie between 0.1 and 3600".to_owned())
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -62,6 +78,11 @@ pub(crate) struct Ready {
 }
 
 impl Place {
+    /// How long an answer is waited for.
+    pub(crate) fn patience(&self) -> Patience {
+        Patience { answer: Duration::from_secs_f64(self.patience_s), interrupted: interrupt::raised }
+    }
+
     /// Builds the firmware if it is needed.
     pub(crate) fn ready(&self) -> Result<Ready, Failure> {
         let emulated = self.port.is_none() && self.connect.is_none() && self.target == Target::Qemu;

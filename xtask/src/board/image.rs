@@ -29,6 +29,12 @@ pub(crate) fn step(board: &Board, feature: Option<&str>) -> Result<PathBuf> {
     Ok(folder(board).join("step"))
 }
 
+/// The program `computer`, which holds nothing but what a board does with bytes from a bench; `feature` spoils it.
+pub(crate) fn computer(board: &Board, feature: Option<&str>) -> Result<PathBuf> {
+    build(board, &["computer"], feature)?;
+    Ok(folder(board).join("computer"))
+}
+
 /// The program `flight`, disturbed by `feature`.
 pub(crate) fn flight_with(board: &Board, feature: &str) -> Result<PathBuf> {
     let (plain, disturbed) = (of(board, "flight")?, folder(board).join(format!("flight-{feature}")));

@@ -6,7 +6,7 @@ mod riscv;
 mod stack_sizes;
 mod thumb;
 
-pub(crate) use code::functions;
+pub(crate) use code::{Function, functions};
 pub(crate) use reach::{Reach, addresses};
 pub(crate) use stack_sizes::stack_sizes;
 
