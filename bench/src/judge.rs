@@ -282,10 +282,15 @@ fn judged(
         requirement.most.is_none_or(|most| value <= most) && requirement.least.is_none_or(|least| value >= least)
     };
     let limit = match (requirement.least, requirement.most) {
-        (Some(least), Some(most)) => format!("{least} to {most}"),
-        (Some(least), None) => format!(">= {least}"),
-        (None, Some(most)) => format!("<= {most}"),
+        (Some(least), Some(most)) => format!("{} to {}", limit_text(least), limit_text(most)),
+        (Some(least), None) => format!(">= {}", limit_text(least)),
+        (None, Some(most)) => format!("<= {}", limit_text(most)),
         (None, None) => String::new(),
     };
     Judged { name, limit, value, passed: value.is_some_and(within) }
+}
+
+/// A limit as people write it: 5e-6, 0.9, 300.
+fn limit_text(limit: f64) -> String {
+    if limit.abs() < 1e-3 && limit.abs() > 0.0 { format!("{limit:e}") } else { format!("{limit}") }
 }

@@ -124,8 +124,12 @@ pub fn text(outcome: &Outcome) -> String {
     let mut text =
         format!("{}: {}\n{}\n", outcome.scenario.name, outcome.verdict.name().to_uppercase(), outcome.target);
     for judged in &outcome.requirements {
-        let mark = if judged.passed { "ok  " } else { "FAIL" };
-        let _ = writeln!(text, "  {mark} {:<34} {:>12}   limit {}", judged.name, value(judged.value), judged.limit);
+        let mark = match (judged.passed, outcome.verdict) {
+            (true, Verdict::Aborted) => "so far",
+            (true, _) => "ok  ",
+            (false, _) => "FAIL",
+        };
+        let _ = writeln!(text, "  {mark:<6} {:<34} {:>12}   limit {}", judged.name, value(judged.value), judged.limit);
     }
     if outcome.verdict == Verdict::Aborted {
         let [done, planned] = outcome.ticks;

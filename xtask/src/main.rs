@@ -26,6 +26,7 @@ usage: cargo xtask <task>
   budget               writes the figures of every board to firmware/budget/, which `test` compares with
   blind                forges, diagnoses and scores the small blind corpus and writes docs/blind/check/, which
                        `test` compares with
+  fuzz SECONDS         every fuzz target for so long; what reaches new code joins fuzz/corpus/
   deny                 cargo-deny on the whole tree; installs it if absent (minutes)
 ";
 
@@ -47,6 +48,9 @@ fn main() -> ExitCode {
         ["profile", board] => task(&|| board::profile::print(board)),
         ["budget"] => task(&board::budget::write),
         ["blind"] => task(&host::blind::write),
+        ["fuzz", seconds] if seconds.parse::<u32>().is_ok() => {
+            task(&|| host::fuzz::fuzz(seconds.parse().unwrap_or_default()))
+        }
         ["deny"] => task(&host::deny::install_and_check),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");

@@ -55,6 +55,7 @@ impl Stages {
             Stage { name: "target-gates", run: board::gates::check },
             Stage { name: "target-stack", run: board::stack::check },
             Stage { name: "target-budget", run: board::budget::check },
+            Stage { name: "fuzz", run: host::fuzz::check },
             Stage { name: "blind", run: host::blind::check },
             Stage { name: "tests", run: host::tests::run },
         ])

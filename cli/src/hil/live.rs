@@ -14,6 +14,8 @@ use crate::plot::Envelope;
 
 /// Ticks between two looks at the terminal.
 const EVERY: u32 = 50;
+/// Width that every terminal has.
+const COLUMNS: usize = 78;
 /// Stop of the paper's gyro, for the margin shown.
 const STOP_RAD: f64 = 0.5 * DEGREE_RAD;
 
@@ -72,28 +74,37 @@ impl Live {
         self.bar.set_length(u64::from(live.ticks));
         self.bar.set_position(u64::from(live.moment.tick));
         let (truth, row) = (&live.moment.truth, &live.moment.row);
-        let mut line = format!(
-            "{:8.2} s  a_y {:7.1} m/s2  rate {:6.3} rad/s  phi {:8.1} urad  theta {:7.2} mrad, {:3.0} % to the stop",
+        let ticks_a_second = f64::from(live.moment.tick) / self.bar.elapsed().as_secs_f64().max(1e-3);
+        // No line is longer than a terminal of 80 columns.
+        let mut lines = format!(
+            "{:8.2} s  a_y {:7.1} m/s2  rate {:6.3} rad/s  {ticks_a_second:7.0} ticks/s\n\
+             theta {:8.3} mrad, {:3.0} % to the stop   phi {:8.1} urad\n",
             f64::from(live.moment.tick) * live.period_s,
             row.accel_y_mps2,
             row.vehicle_rate_radps,
-            1e6 * truth.gimbal_angle_rad,
             1e3 * truth.gyro_angle_rad,
             100.0 * (1.0 - truth.gyro_angle_rad.abs() / STOP_RAD).max(0.0),
+            1e6 * truth.gimbal_angle_rad,
         );
         let _ = match live.estimate {
             Some(estimate) => write!(
-                line,
-                "\n           estimate {:8.1} urad +- {:6.1}, {}",
+                lines,
+                "estimate {:8.1} +- {:.1} urad, error {:6.1} urad, {}",
                 1e6 * estimate.gimbal_angle_rad,
                 1e6 * estimate.bound_rad,
+                1e6 * (f64::from(estimate.gimbal_angle_rad) - truth.gimbal_angle_rad),
                 estimate.mode.name()
             ),
-            None => write!(line, "\n           no estimate"),
+            None => write!(lines, "no estimate"),
         };
-        let bits: Vec<&str> = live.bits.keys().copied().collect();
-        let _ = write!(line, "   {}", bits.join(" "));
-        self.bar.set_message(line);
+        let mut width = usize::MAX;
+        for bit in live.bits.keys() {
+            let apart = if width > COLUMNS - bit.len() { "\nraised: " } else { " " };
+            width = if apart == " " { width } else { 7 } + 1 + bit.len();
+            lines += apart;
+            lines += bit;
+        }
+        self.bar.set_message(lines);
     }
 
     fn keep(&mut self, live: &run::Live) {

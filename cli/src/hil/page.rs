@@ -59,7 +59,13 @@ fn requirements(page: &mut String, outcome: &Outcome) {
         "<h2>Requirements</h2>\n<table><tr><th>requirement</th><th>limit</th><th>measured</th><th>verdict</th></tr>\n",
     );
     for judged in &outcome.requirements {
-        let (class, word) = if judged.passed { ("", "pass") } else { (" class=\"bad\"", "fail") };
+        // What a run that was broken off has kept so far is no pass.
+        let (class, word) = match (judged.passed, outcome.verdict) {
+            (true, Verdict::Aborted) => ("", "kept so far"),
+            (true, _) => ("", "pass"),
+            (false, Verdict::Aborted) => (" class=\"bad\"", "not kept so far"),
+            (false, _) => (" class=\"bad\"", "fail"),
+        };
         let (name, limit) = (escaped(&judged.name), escaped(&judged.limit));
         let _ = writeln!(
             page,
@@ -68,6 +74,7 @@ fn requirements(page: &mut String, outcome: &Outcome) {
         );
     }
     let (class, word) = match outcome.host_equals_board {
+        Some(true) if outcome.verdict == Verdict::Aborted => ("", "kept so far"),
         Some(true) => ("", "pass"),
         Some(false) => (" class=\"bad\"", "fail"),
         None => (" class=\"bad\"", "no answer"),

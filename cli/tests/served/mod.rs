@@ -1,5 +1,7 @@
 //! A flight computer behind a TCP socket, well or badly behaved.
 
+#![allow(dead_code, reason = "no test file uses all of it")]
+
 use std::io::{Read, Write};
 use std::net::TcpListener;
 

@@ -5,6 +5,7 @@ pub(crate) mod deny;
 pub(crate) mod digests;
 pub(crate) mod documents;
 pub(crate) mod format;
+pub(crate) mod fuzz;
 pub(crate) mod licences;
 pub(crate) mod lints;
 pub(crate) mod oldest_rust;

@@ -1,5 +1,6 @@
 //! Counts the instructions of the step, each single one of ten seconds of flight and of ten seconds between the stops;
-//! of its blocks by themselves; of estimator and monitor; and of other crates that do part of the same work.
+//! of its blocks by themselves; of estimator and monitor; of the frames of a bench; and of other crates that do part of
+//! the same work.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -13,6 +14,8 @@ mod others;
 mod parts;
 #[cfg(target_os = "none")]
 mod tally;
+#[cfg(target_os = "none")]
+mod wire;
 
 #[cfg(not(target_os = "none"))]
 fn main() {}
@@ -43,6 +46,8 @@ fn run() -> Result<(), &'static str> {
     }
     parts::count::<f32>(counter, "f32")?;
     parts::count::<Fixed>(counter, "fixed")?;
+    wire::count(counter, "f32")?;
+    wire::count(counter, "fixed")?;
     if board::RAM_BYTES >= AIDS_RAM_BYTES {
         for case in aids::CASES {
             aids::count::<f32>(counter, &case, "f32")?;
