@@ -59,7 +59,7 @@ impl fmt::Display for BuildError {
             Self::UnstablePole { real_radps, imag_radps } => write!(
                 f,
                 "the loop is unstable: closed-loop pole at {real_radps:.4} {imag_radps:+.4}j rad/s; \
-                 every pole needs a negative real part (lower `servo.gain_nm_per_rad_s`, or more lead)"
+                 every pole needs a negative real part"
             ),
             Self::RepeatedPole { real_radps, imag_radps } => write!(
                 f,

@@ -19,3 +19,19 @@ pub(crate) fn print(text: &str, json: Option<&serde_json::Value>) -> Result<(), 
         other => other.map_err(|error| Failure::Environment(error.into())),
     }
 }
+
+/// A number and what is counted, one or several.
+pub(crate) fn counted(count: u64, name: &str) -> String {
+    if count == 1 { format!("1 {name}") } else { format!("{count} {name}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::counted;
+
+    #[test]
+    fn contract_one_is_no_plural() {
+        assert_eq!(counted(1, "run"), "1 run");
+        assert_eq!(counted(0, "run"), "0 runs");
+    }
+}

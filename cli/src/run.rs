@@ -18,7 +18,7 @@ use gimbal_servo::{BuildError, Config, Fixed};
 use serde_json::{Value, json};
 
 use crate::exit::Failure;
-use crate::report;
+use crate::report::{self, counted};
 use drive::{Files, Finished};
 use flight::Flight;
 use model::{Initial, Kind, Model};
@@ -186,13 +186,14 @@ fn told(mended: &Mended) -> Vec<String> {
         notes.push(mended.time.to_string());
     }
     if mended.filled_rows > 0 {
-        notes.push(format!("{} missing rows: filled in along straight lines", mended.filled_rows));
+        notes.push(format!("{}: filled in along straight lines", counted(mended.filled_rows, "missing row")));
     }
     if mended.left_out_rows > 0 {
-        notes.push(format!("{} rows less than half a period behind another: left out", mended.left_out_rows));
+        notes
+            .push(format!("{} less than half a period behind another: left out", counted(mended.left_out_rows, "row")));
     }
     if mended.missing_samples > 0 {
-        notes.push(format!("{} missing samples: taken as the last one known", mended.missing_samples));
+        notes.push(format!("{}: taken as the last one known", counted(mended.missing_samples, "missing sample")));
     }
     notes
 }

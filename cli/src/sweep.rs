@@ -7,10 +7,12 @@ mod answer;
 mod lanes;
 pub(crate) mod margin;
 pub(crate) mod parameter;
+mod parquet;
 mod picture;
 mod plan;
 mod processor;
 mod record;
+mod told;
 pub(crate) mod trial;
 
 use std::fmt::Write;
@@ -53,8 +55,8 @@ pub(crate) struct Args {
     /// Another draw
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// One row a run; an interrupted sweep goes on from where it was
-    #[arg(long, value_name = "FILE.csv")]
+    /// One row a run, CSV or Parquet by the name; an interrupted sweep goes on from where it was
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Draw it: a heat map of two ranges, a line of one, percentiles of draws; .svg or .png
     #[arg(long, value_name = "FILE")]
@@ -94,7 +96,12 @@ pub(crate) fn sweep(args: &Args) -> Result<(), Failure> {
     let threads = pool.current_num_threads() as u64;
     let bar = bar(plan.runs(), answer.runs());
     while answer.runs() < plan.runs() {
-        interrupt::check()?;
+        if interrupt::raised() {
+            if record.is_some() {
+                eprintln!("{} of {} runs are kept; the same call goes on from there", answer.runs(), plan.runs());
+            }
+            return Err(Failure::Interrupted);
+        }
         let rows: Vec<Vec<String>> =
             pool.install(|| (0..threads).into_par_iter().map(|part| rows(&plan, answer.runs(), part)).collect());
         let rows = rows.concat();

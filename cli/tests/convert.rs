@@ -75,6 +75,8 @@ fn cross_a_real_rocket_flies_through_the_model() {
     let Some(flight) = real("rocket/irec_2023_easymega.csv") else { return };
     let flight = flight.to_str().expect("a name");
     let bench = Bench::new();
+    let told = bench.fail(2, &["run", flight]);
+    assert!(told.contains("this is an AltOS export; make a log of it: `gimbal convert "), "{told}");
     let report = bench.json(&["convert", flight, "--out", "log.csv", "--json", "--to-s", "40.3"]);
     assert_eq!((report["format"].as_str(), report["gimbal_axis"].as_str()), (Some("altos"), Some("pitch")));
     assert_eq!(report["source"]["rows"], 6890);

@@ -1,44 +1,16 @@
 //! The platform of three gimbals, against three plants and rotation matrices in f64.
 
-use gimbal_plant::{Plant, Row};
+use gimbal_plant::Platform;
 use gimbal_servo::platform::{Axis, Config, Gimbal, Input};
 use gimbal_servo::{BuildError, Fixed, Number, estimator};
 
 type Vector = [f64; 3];
-type Matrix = [Vector; 3];
 
 const ROWS: usize = 3_000;
 const PERIOD_S: f64 = 1e-3;
 
-fn times(m: &Matrix, v: Vector) -> Vector {
-    core::array::from_fn(|i| m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2])
-}
-
-fn transposed(m: &Matrix) -> Matrix {
-    core::array::from_fn(|i| core::array::from_fn(|j| m[j][i]))
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
 fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn unit(axis: usize) -> Vector {
-    core::array::from_fn(|i| f64::from(u8::from(i == axis)))
-}
-
-/// Rodrigues' formula.
-fn rotation(axis: usize, angle: f64) -> Matrix {
-    let e = unit(axis);
-    let columns: Matrix = core::array::from_fn(|j| {
-        let v = unit(j);
-        let (turned, along) = (cross(e, v), dot(e, v));
-        core::array::from_fn(|i| v[i] * angle.cos() + turned[i] * angle.sin() + e[i] * along * (1.0 - angle.cos()))
-    });
-    transposed(&columns)
 }
 
 /// A vehicle that thrusts along y, shakes and turns about all three axes, with the gimbal angles it has then.
@@ -54,58 +26,10 @@ fn row(k: usize) -> Input<f64> {
 
 /// phi in the stable member's axes and velocity error after the last row, from three plants.
 fn reference(config: &Config) -> (Vec<Vector>, Vector) {
-    let [outer, middle, inner] = config.gimbals.map(|gimbal| gimbal.axis.index());
-    let of = |axis: usize| config.gimbals.iter().find(|gimbal| gimbal.axis.index() == axis).expect("an axis");
-    let plants = [0, 1, 2].map(|axis| Plant::new(&of(axis).servo).expect("a plant").with_tolerance(1e-9));
-    let mut states = [0, 1, 2].map(|axis| plants[axis].start());
-    let (mut last, mut own): ([Row; 3], Vector) = ([Row::default(); 3], [0.0; 3]);
-    let (mut angles, mut velocity, mut product) = (Vec::new(), [0.0; 3], [0.0; 3]);
-    for k in 0..ROWS {
-        let input = row(k);
-        let [to_middle, to_outer, to_vehicle] =
-            [inner, middle, outer].map(|axis| rotation(axis, input.gimbal_angle_rad[axis]));
-        let in_middle = times(&to_middle, input.accel_mps2);
-        let in_outer = times(&to_outer, in_middle);
-        // In the axes of the middle gimbal: w = r_o e_o + r_m e_m + r_i e_i, by Cramer's rule.
-        let rate = times(&transposed(&to_outer), times(&transposed(&to_vehicle), input.vehicle_rate_radps));
-        let axes = [times(&transposed(&to_outer), unit(outer)), unit(middle), unit(inner)];
-        let whole = dot(axes[0], cross(axes[1], axes[2]));
-        let mut rates = [0.0; 3];
-        rates[outer] = dot(rate, cross(axes[1], axes[2])) / whole;
-        rates[middle] = dot(axes[0], cross(rate, axes[2])) / whole;
-        rates[inner] = dot(axes[0], cross(axes[1], rate)) / whole;
-        let mut forces = [[0.0; 3]; 3];
-        (forces[outer], forces[middle], forces[inner]) = (in_outer, in_middle, input.accel_mps2);
-        let mut phi = [0.0; 3];
-        let mut next = [0.0; 3];
-        for axis in 0..3 {
-            let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-            let now = Row {
-                accel_x_mps2: forces[axis][x],
-                accel_y_mps2: forces[axis][y],
-                accel_z_mps2: forces[axis][axis],
-                vehicle_rate_radps: rates[axis],
-                torque_nm: input.torque_nm[axis],
-                spin_rate_radps: own[x],
-                ..Row::default()
-            };
-            let sample = if k == 0 {
-                plants[axis].sample(&states[axis], &now)
-            } else {
-                plants[axis].step(&mut states[axis], &last[axis], &now)
-            };
-            (phi[axis], next[axis], last[axis]) = (sample.gimbal_angle_rad, sample.gimbal_rate_radps, now);
-        }
-        own = next;
-        let phi = times(&transposed(&to_middle), phi);
-        let now = cross(input.accel_mps2, phi);
-        for axis in 0..3 {
-            velocity[axis] += if k > 0 { 0.5 * PERIOD_S * (product[axis] + now[axis]) } else { 0.0 };
-        }
-        product = now;
-        angles.push(phi);
-    }
-    (angles, velocity)
+    let platform = Platform::new(config).expect("a platform").with_tolerance(1e-9);
+    let samples: Vec<_> = platform.run((0..ROWS).map(row)).collect();
+    let velocity = samples.last().expect("rows").velocity_error_mps;
+    (samples.iter().map(|sample| sample.attitude_error_rad).collect(), velocity)
 }
 
 /// Largest difference of phi over its peak, and of the velocity error over its norm.

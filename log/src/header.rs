@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{LogError, Problem, clip};
+use crate::import::is_altos;
 use crate::records::Record;
 use crate::{Column, Layout, Needs, Scale};
 
@@ -102,7 +103,7 @@ pub(crate) fn contract(file: &Path, names: Vec<String>, needs: Needs) -> Result<
                     name: column.name().to_owned(),
                     unit: column.unit().to_owned(),
                     purpose: needs.purpose(),
-                    hint: nearest_hint(column.name(), layout.extra_names()),
+                    hint: missing_hint(file, column.name(), &layout),
                 };
                 return Err(LogError::line(file, 1, problem));
             }
@@ -117,6 +118,15 @@ pub(crate) fn contract(file: &Path, names: Vec<String>, needs: Needs) -> Result<
         }
     }
     Ok((layout, remarks))
+}
+
+/// What to say when a column is not there.
+fn missing_hint(file: &Path, wanted: &str, layout: &Layout) -> String {
+    if is_altos(layout.names()) {
+        let file = file.display();
+        return format!("this is an AltOS export; make a log of it: `gimbal convert {file} --out FILE.csv`");
+    }
+    nearest_hint(wanted, layout.extra_names())
 }
 
 /// An extra column that is this quantity in another unit, and that unit.

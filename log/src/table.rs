@@ -33,6 +33,15 @@ impl Extra {
         self.cells.get(row)
     }
 
+    /// The cells as numbers, NaN where a cell is empty; none where some cell is text, or all are empty.
+    #[must_use]
+    pub fn all_numbers(&self) -> Option<Vec<f64>> {
+        let numbers = self.numbers();
+        let text = |row: usize| numbers[row].is_nan() && !self.cell(row).trim().is_empty();
+        let there = numbers.iter().any(|number| !number.is_nan());
+        (there && !(0..numbers.len()).any(text)).then_some(numbers)
+    }
+
     /// The cells as numbers; NaN where they are none.
     #[must_use]
     pub fn numbers(&self) -> Vec<f64> {
@@ -121,6 +130,16 @@ impl Log {
     #[must_use]
     pub fn extras(&self) -> &[Extra] {
         &self.extras
+    }
+
+    /// Adds a column without a meaning; NaN is an empty cell.
+    pub(crate) fn push_extra(&mut self, name: &str, values: &[f64]) {
+        let mut extra = Extra { name: name.to_owned(), ..Extra::default() };
+        for value in values {
+            let cell = if value.is_nan() { String::new() } else { value.to_string() };
+            extra.cells.push(cell.as_bytes());
+        }
+        self.extras.push(extra);
     }
 
     /// One row.

@@ -72,6 +72,11 @@ impl TimeReport {
     }
 }
 
+/// The ending of what there are several of.
+const fn plural(count: u64) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
 impl fmt::Display for TimeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} rows from {} s to {} s, {:.6} Hz", self.rows, self.first_s, self.last_s, self.rate_hz())?;
@@ -82,15 +87,23 @@ impl fmt::Display for TimeReport {
         if self.gaps > 0 {
             write!(
                 f,
-                "; {} gaps ({} samples), the longest {:.4} s after {} s",
-                self.gaps, self.gap_samples, self.longest_gap_s, self.longest_gap_at_s
+                "; {} gap{} ({} sample{}), the longest {:.4} s after {} s",
+                self.gaps,
+                plural(self.gaps),
+                self.gap_samples,
+                plural(self.gap_samples),
+                self.longest_gap_s,
+                self.longest_gap_at_s
             )?;
         }
         if self.repeats > 0 {
             write!(
                 f,
-                "; {} repeated time stamps, at most {} rows alike at {} s",
-                self.repeats, self.most_alike, self.most_alike_at_s
+                "; {} repeated time stamp{}, at most {} rows alike at {} s",
+                self.repeats,
+                plural(self.repeats),
+                self.most_alike,
+                self.most_alike_at_s
             )?;
         }
         if let [first, others @ ..] = self.rates.as_slice()

@@ -116,8 +116,42 @@ impl ModelFile {
     #[must_use]
     pub fn locate(&self, error: &BuildError) -> ModelFileError {
         let message = error.to_string();
+        if matches!(error, BuildError::UnstablePole { .. }) {
+            return self.unstable(&message);
+        }
         let field = message.split('`').nth(1).unwrap_or_default();
         self.error(self.span(field), Problem::Impossible(message))
+    }
+
+    /// An unstable loop, with the key of this file that makes it so, if one alone does.
+    fn unstable(&self, message: &str) -> ModelFileError {
+        let in_loop = |name: &&str| name.starts_with("servo.") || name.starts_with("gyro.");
+        let changed: Vec<&str> = self.places.iter().map(|(name, _)| name.as_str()).filter(in_loop).collect();
+        let stable_without = |name: &&str| self.without(name).is_some_and(|config| config.build::<f32>().is_ok());
+        let preset = self.preset.name();
+        if let Some(&cause) = changed.iter().find(|name| stable_without(name)) {
+            let told = format!("{message}; with `{cause}` of the preset {preset} it is stable");
+            return self.error(self.span(cause), Problem::Impossible(told));
+        }
+        let cause = if changed.is_empty() {
+            String::new()
+        } else {
+            let names: Vec<String> = changed.iter().map(|name| format!("`{name}`")).collect();
+            format!(
+                "; what differs from the preset {preset}, and no single one of them alone does it: {}",
+                names.join(", ")
+            )
+        };
+        self.error(None, Problem::Impossible(format!("{message}{cause}")))
+    }
+
+    /// The parameters with one of this file's left as in the preset.
+    fn without(&self, name: &str) -> Option<Config> {
+        let (table, key) = name.split_once('.')?;
+        let mut tables = serialized(&self.config);
+        let base = serialized(&self.preset.config()).get(table)?.get(key)?.clone();
+        tables.get_mut(table)?.as_table_mut()?.insert(key.to_owned(), base);
+        merge::config(&tables).ok()
     }
 
     /// Where the value of `table.key` stands in the file.

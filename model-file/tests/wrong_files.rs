@@ -98,6 +98,12 @@ fn contract_what_the_law_refuses_is_told_where_it_stands() {
     let error = BuildError::UnstablePole { real_radps: 3.0, imag_radps: 500.0 };
     let message = model.locate(&error).to_string();
     assert!(message.starts_with("m.toml: line 2, column 21: the loop is unstable"), "{message}");
+    assert!(message.ends_with("with `servo.gain_nm_per_rad_s` of the preset consistent it is stable"), "{message}");
+    // Not the gain: too much lead, beside a key that has no part in it.
+    let text = "[servo]\nmotor_lag_s = 0.0009\nlead_time_constants_s = [2.16, 0.0385, 0.0156, 0.0127, 1.68]\n";
+    let message = ModelFile::parse(text, "m.toml").expect("reads").locate(&error).to_string();
+    assert!(message.starts_with("m.toml: line 3, column 25: the loop is unstable"), "{message}");
+    assert!(message.contains("with `servo.lead_time_constants_s` of the preset"), "{message}");
 }
 
 #[test]

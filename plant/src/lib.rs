@@ -25,6 +25,7 @@ mod effects;
 mod friction;
 mod guard;
 mod plant;
+mod platform;
 mod row;
 mod runge_kutta;
 mod sample;
@@ -36,6 +37,7 @@ mod vector;
 
 pub use effects::{Block, Bound, Effect, EffectError, Parameter};
 pub use plant::Plant;
+pub use platform::{Platform, PlatformSample};
 pub use row::{Between, Row};
 pub use sample::{Logged, Sample};
 pub use state::{Quantity, State, Stop, StopEvent, StopEventKind};

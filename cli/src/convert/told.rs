@@ -7,6 +7,7 @@ use gimbal_log::import::Resampled;
 use serde_json::{Value, json};
 
 use super::Args;
+use crate::report::counted;
 
 /// Everything that the report is made of.
 pub(super) struct Told<'a> {
@@ -29,21 +30,30 @@ impl Told<'_> {
             text += "\nroll taken out, as a roll gimbal outside of the gimbal axis does";
         }
         if resampled.averaged_rows > 0 {
-            let _ = write!(text, "\n{} rows with the time stamp of the row before: averaged", resampled.averaged_rows);
+            let _ = write!(
+                text,
+                "\n{} with the time stamp of the row before: averaged",
+                counted(resampled.averaged_rows as u64, "row")
+            );
         }
         if let Some(longest) = self.longest() {
             let _ = write!(
                 text,
-                "\n{} gaps of 1.5 periods and more, {:.2} s together: crossed by straight lines; the longest from {} s \
+                "\n{} of 1.5 periods and more, {:.2} s together: crossed by straight lines; the longest from {} s \
                  to {} s",
-                resampled.bridged.len(),
+                counted(resampled.bridged.len() as u64, "gap"),
                 resampled.bridged_s(),
                 longest.from_s,
                 longest.to_s
             );
         }
         for (column, count) in &resampled.bridged_missing {
-            let _ = write!(text, "\n{count} missing samples of {}: crossed by straight lines", column.name());
+            let _ = write!(
+                text,
+                "\n{} of {}: crossed by straight lines",
+                counted(*count as u64, "missing sample"),
+                column.name()
+            );
         }
         if self.turned {
             text += "\naccelerations turned from the vehicle's axes into the stable member's";
@@ -51,11 +61,17 @@ impl Told<'_> {
         if !resampled.dropped.is_empty() {
             let _ = write!(
                 text,
-                "\nleft out, because not every cell in them is a number: {}",
+                "\nleft out, because text has no value between two rows: {}",
                 resampled.dropped.join(", ")
             );
         }
-        let _ = write!(text, "\n{}: {} rows at {} Hz", args.out.display(), resampled.log.len(), self.rate_hz());
+        let _ = write!(
+            text,
+            "\n{}: {} at {} Hz",
+            args.out.display(),
+            counted(resampled.log.len() as u64, "row"),
+            self.rate_hz()
+        );
         text
     }
 

@@ -1,5 +1,7 @@
 //! The table of facts: what the paper publishes, and what comes out here.
 
+mod course;
+
 use std::fmt::Write;
 
 use gimbal_servo::paper::{DEGREE_RAD, DYNE_CM_NM};
@@ -7,7 +9,6 @@ use gimbal_servo::{BuildError, Config};
 use serde_json::{Value, json};
 
 use super::elasticity::{free, load_friction_dyne_cm};
-use super::growth;
 use super::slips::{Angles, PHI_DEG, STOP_DEG};
 use crate::run::flight::Flight;
 use crate::run::model::{Initial, Model};
@@ -72,10 +73,15 @@ impl Number {
             published: format!("{published} {unit}").trim_end().to_owned(),
             consistent: text(self.consistent),
             printed: text(self.printed),
-            difference: format!("{:+.1} %", 100.0 * (self.consistent / published - 1.0)),
+            difference: percent(100.0 * (self.consistent / published - 1.0)),
             verdict: if agrees { Verdict::Agrees } else { Verdict::Open },
         }
     }
+}
+
+/// A difference to a tenth of a percent; less than that is no signed zero.
+fn percent(value: f64) -> String {
+    if value.abs() < 0.05 { "below 0.1 %".to_owned() } else { format!("{value:+.1} %") }
 }
 
 /// Whether the gyro met its stop, and the theta that says so.
@@ -162,8 +168,8 @@ pub(super) fn facts() -> Result<Vec<Fact>, BuildError> {
             4,
         ),
     ];
-    facts.extend(growth_facts(&consistent, &printed)?);
-    facts.extend(after_facts(&consistent, &printed)?);
+    facts.extend(course::growth(&consistent, &printed)?);
+    facts.extend(course::after(&consistent, &printed)?);
     Ok(facts)
 }
 
@@ -203,89 +209,6 @@ fn measured_points(consistent: &Config, printed: &Config) -> Fact {
         difference: String::new(),
         verdict: Verdict::Unchecked,
     }
-}
-
-/// Figures 7 to 10: growth with the acceleration.
-fn growth_facts(consistent: &Config, printed: &Config) -> Result<Vec<Fact>, BuildError> {
-    let exponents = |config: &Config, case, span_g| {
-        // As printed the gyro would be on its stop: the law of growth is that of the loop.
-        let mut free = *config;
-        free.gyro.stop_angle_rad = 1e3;
-        growth::exponents(&free, case, span_g)
-    };
-    let mut facts = Vec::new();
-    for (case, place, names) in [
-        (
-            Case::Unbalance,
-            "figures 7, 8",
-            ["unbalance: phi grows as A^n", "unbalance: theta grows as A^n", "unbalance: velocity error grows as A^n"],
-        ),
-        (
-            Case::Friction,
-            "figures 9, 10",
-            ["friction: phi grows as A^n", "friction: theta grows as A^n", "friction: velocity error grows as A^n"],
-        ),
-    ] {
-        let (all, high) = ((1.0, 20.0), (15.0, 25.0));
-        let (ours, theirs) = (exponents(consistent, case, all)?, exponents(printed, case, all)?);
-        let (ours_high, theirs_high) = (exponents(consistent, case, high)?, exponents(printed, case, high)?);
-        for (index, name) in names.into_iter().enumerate() {
-            let published = if index < 2 { 1.0 } else { 2.0 };
-            let text = |all: f64, high: f64| format!("n = {all:.3} from 1 to 20 g, {high:.3} about 20 g");
-            // "In proportion" and "nearly": within a tenth over the range of the figures.
-            let agrees = |exponents: &[f64; 3]| (exponents[index] - published).abs() <= 0.1;
-            facts.push(Fact {
-                name,
-                place,
-                published: if index < 2 { "in proportion, n = 1" } else { "nearly the square, n = 2" }.to_owned(),
-                consistent: text(ours[index], ours_high[index]),
-                printed: text(theirs[index], theirs_high[index]),
-                difference: format!("{:+.3}", ours[index] - published),
-                verdict: match (agrees(&ours), agrees(&ours_high)) {
-                    (true, _) => Verdict::Agrees,
-                    (false, true) => Verdict::InPart,
-                    (false, false) => Verdict::Open,
-                },
-            });
-        }
-    }
-    Ok(facts)
-}
-
-/// After the acceleration the velocity error stays and the position error goes on along that slope.
-fn after_facts(consistent: &Config, printed: &Config) -> Result<Vec<Fact>, BuildError> {
-    let after = |config: &Config| {
-        let config = Case::Unbalance.config(config);
-        let mut model = Flight::<f32>::new(&config, Initial::Zero)?;
-        let mut at_5_s = None;
-        let rows = Profile::len(config.period_s);
-        for k in 0..rows {
-            model.step(&Profile::Unbalance.row(k, config.period_s));
-            if k == rows / 2 {
-                at_5_s = Some(model.sample());
-            }
-        }
-        let end = model.sample();
-        let start = at_5_s.unwrap_or(end);
-        let velocity = end.velocity_error_mps[0];
-        let drift = velocity / start.velocity_error_mps[0] - 1.0;
-        let slope = (end.position_error_m[0] - start.position_error_m[0]) / (velocity * 5.0) - 1.0;
-        Ok::<[f64; 2], BuildError>([drift, slope])
-    };
-    let (ours, theirs) = (after(consistent)?, after(printed)?);
-    let names =
-        ["velocity error stays constant after the acceleration", "position error goes on along the velocity error"];
-    Ok((0..2)
-        .map(|i| Fact {
-            name: names[i],
-            place: "figure 7",
-            published: "constant slope".to_owned(),
-            consistent: format!("within {:.3} % over 5 s", 100.0 * ours[i].abs()),
-            printed: format!("within {:.3} % over 5 s", 100.0 * theirs[i].abs()),
-            difference: String::new(),
-            verdict: if ours[i].abs() < 1e-3 { Verdict::Agrees } else { Verdict::Open },
-        })
-        .collect())
 }
 
 /// The table for people.

@@ -79,14 +79,9 @@ fn sheet(config: &Config, case: Case, (number, order, title): (&'static str, u32
     let line = |accel_g: f64| (accel_g, power.factor * accel_g.powf(power.exponent));
     let fit_name = format!("{:.2e} m/s * (A/g)^{:.3}", power.factor, power.exponent);
     let limit_name = limit_g.map(|limit_g| format!("gyro on its stop from {limit_g:.2} g: excluded"));
-    // Runs on the stop lie decades above: the axis ends with the power law, and the caption tells what is beyond.
+    // Runs on the stop lie decades above the power law.
     let least = flight.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
-    let top = 2.0 * line(MOST_G).1;
-    let beyond: Vec<String> = excluded
-        .iter()
-        .filter(|point| point.1 > top)
-        .map(|(accel_g, error_mps)| format!("{error_mps:.3} m/s at {accel_g} g"))
-        .collect();
+    let most_mps = excluded.iter().map(|point| point.1).fold(line(MOST_G).1, f64::max);
     let mut series = vec![
         Series { name: &fit_name, points: vec![line(1.0), line(MOST_G)], look: Look::Line(2) },
         Series { name: "plant", points: plant, look: Look::Crosses(1) },
@@ -101,7 +96,7 @@ fn sheet(config: &Config, case: Case, (number, order, title): (&'static str, u32
     let chart = Chart {
         title,
         x: Axis { label: "acceleration [g]", from: 0.9, to: MOST_G, log: true },
-        y: Axis { label: "velocity error [m/s]", from: 0.7 * least, to: top, log: true },
+        y: Axis { label: "velocity error [m/s]", from: 0.7 * least, to: 2.0 * most_mps, log: true },
         series,
         band: None,
         shaded: limit_g.zip(limit_name.as_deref()).map(|(limit_g, name)| (name, limit_g, MOST_G)),
@@ -109,11 +104,7 @@ fn sheet(config: &Config, case: Case, (number, order, title): (&'static str, u32
     };
     let limit = limit_g.map_or_else(
         || format!("The gyro stays off its stop up to {MOST_G} g."),
-        |limit_g| {
-            let beyond =
-                if beyond.is_empty() { String::new() } else { format!(" Off the scale: {}.", beyond.join(", ")) };
-            format!("The gyro meets its stop at {limit_g:.2} g; runs beyond are left out of the fit.{beyond}")
-        },
+        |limit_g| format!("The gyro meets its stop at {limit_g:.2} g; runs beyond are left out of the fit."),
     );
     let caption = format!("{title}; fitted: velocity error grows with A^{:.3}. {limit}", power.exponent);
     let difference = Difference { signal: "velocity error", of_peak: most.1, at: format!("{} g", most.0) };

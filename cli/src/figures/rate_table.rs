@@ -61,7 +61,7 @@ pub(super) fn sheets(config: &Config) -> Result<Vec<Sheet>, Failure> {
     let fed_back = Trace { plant: bare.flight.clone(), ..table };
     let method = fed_back.difference("theta", THETA);
     let caption = format!(
-        "{title}. The step's gyro angle differs from the table's by at most {:.1} % of the peak, at {}: the bearing's rate \
+        "{title}. The step's gyro angle differs from the table's by at most {:.3} % of the peak, at {}: the bearing's rate \
          passes the clamp's zone, the step does not.",
         100.0 * method.of_peak,
         method.at

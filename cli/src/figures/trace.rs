@@ -122,3 +122,35 @@ pub(super) const MOTOR: Signal = |sample| sample.motor_torque_nm;
 pub(super) const VELOCITY: Signal = |sample| sample.velocity_error_mps[0];
 /// Position error, likewise [m].
 pub(super) const POSITION: Signal = |sample| sample.position_error_m[0];
+
+#[cfg(test)]
+mod tests {
+    use gimbal_servo::{Config, Input};
+
+    use super::{PHI, THETA, Trace};
+    use crate::run::model::{Initial, held};
+
+    /// What is above 0.1 % of the peak is marked, there and nowhere else; what is below is not.
+    #[test]
+    fn contract_differences_above_a_thousandth_of_the_peak_are_marked() {
+        let config = held(Config::consistent());
+        let rows = vec![Input { torque_nm: 0.01, ..Input::default() }; 1000];
+        let mut trace = Trace::run(&config, Initial::Zero, rows).expect("a preset");
+        assert!(trace.marked(&[PHI, THETA]).is_empty());
+        let peak = trace.peak(PHI);
+        for (k, sample) in trace.flight.iter_mut().enumerate() {
+            sample.gimbal_angle_rad += match k {
+                200..300 => 2e-3 * peak,
+                600..700 => 5e-4 * peak,
+                _ => 0.0,
+            };
+        }
+        let spans = trace.marked(&[PHI, THETA]);
+        assert_eq!(spans.len(), 1);
+        assert!((spans[0].0 - 0.2).abs() < 1e-9 && (spans[0].1 - 0.299).abs() < 1e-9, "{spans:?}");
+        let difference = trace.difference("phi", PHI);
+        let told = difference.text();
+        assert!((difference.of_peak / 2e-3 - 1.0).abs() < 0.05 && told.ends_with("above 0.1 %: marked"), "{told}");
+        assert!(!trace.difference("theta", THETA).text().contains("marked"));
+    }
+}

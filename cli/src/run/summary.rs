@@ -7,6 +7,7 @@ use gimbal_servo::Faults;
 use serde_json::{Value, json};
 
 use super::model::{Kind, Sample, Totals};
+use crate::report::counted;
 
 const RADIAN_DEG: f64 = 180.0 / PI;
 
@@ -73,7 +74,7 @@ impl Summary {
     /// For people.
     pub(crate) fn text(&self) -> String {
         let totals = &self.totals;
-        let mut text = format!("{}\n{} samples, {}\n", self.title, totals.samples, self.kind.name());
+        let mut text = format!("{}\n{}, {}\n", self.title, counted(totals.samples, "sample"), self.kind.name());
         let mut line = |name: &str, value: String| {
             let _ = writeln!(text, "  {name:<22}{value}");
         };

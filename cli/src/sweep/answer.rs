@@ -1,14 +1,8 @@
-//! What a sweep says: at how many g the platform saturates, and which part's tolerance decides that.
+//! What the runs of a sweep come to, in constant memory: each metric's spread, and what each parameter does to the limit.
 
-use std::fmt::Write;
+use super::parameter::Parameter;
+use super::plan::{Design, Plan};
 
-use serde_json::{Value, json};
-
-use super::plan::{Design, METRICS, Plan};
-use super::trial::Case;
-
-/// Percentiles that are told.
-const PERCENT: [f64; 7] = [0.1, 1.0, 5.0, 50.0, 95.0, 99.0, 99.9];
 /// Width and number of the bins that percentiles are read from, relative to the nominal value.
 const BIN: f64 = 1e-4;
 const BINS: usize = 40_000;
@@ -20,7 +14,7 @@ pub(super) struct Spread {
     pub(super) count: u64,
     least: f64,
     most: f64,
-    mean: f64,
+    pub(super) mean: f64,
     squares: f64,
     bins: Vec<u32>,
 }
@@ -30,8 +24,8 @@ pub(super) struct Answer {
     /// In the order of [`METRICS`].
     pub(super) spreads: Vec<Spread>,
     runs: u64,
-    unbuilt: u64,
-    limited: u64,
+    pub(super) unbuilt: u64,
+    pub(super) limited: u64,
     /// Sums of each parameter, its square and its product with the limit, over runs with a limit.
     sums: Vec<[f64; 3]>,
     /// Each parameter's nominal value.
@@ -39,6 +33,18 @@ pub(super) struct Answer {
     keeps_grid: bool,
     /// Values and limit of the first runs, for a picture of a grid.
     pub(super) grid: Vec<(Vec<f64>, f64)>,
+}
+
+/// What a parameter does to the limit. Parameters are drawn independently, so that shares add up to 1 but for curvature and
+/// chance.
+pub(super) struct Part {
+    pub(super) parameter: &'static Parameter,
+    /// Of the limit's variance.
+    pub(super) share: f64,
+    /// Standard deviation of the share, from the number of runs.
+    pub(super) scatter: f64,
+    /// Change of the limit for one standard deviation of the parameter [g].
+    pub(super) slope_g: f64,
 }
 
 /// The most grid points that a picture shows.
@@ -66,12 +72,15 @@ impl Spread {
         self.bins[bin.min(BINS - 1)] += 1;
     }
 
-    fn deviation(&self) -> f64 {
+    pub(super) fn deviation(&self) -> f64 {
         if self.count > 1 { (self.squares / (self.count - 1) as f64).sqrt() } else { 0.0 }
     }
 
-    /// The value that a share of the runs lies below, to a bin.
+    /// The value that a share of the runs lies below, to a bin; not a number where there is no run.
     pub(super) fn percentile(&self, percent: f64) -> f64 {
+        if self.count == 0 {
+            return f64::NAN;
+        }
         let wanted = percent / 100.0 * self.count as f64;
         let mut below = 0.0;
         for (bin, &count) in self.bins.iter().enumerate() {
@@ -133,132 +142,24 @@ impl Answer {
         }
     }
 
-    /// Each parameter's part of the limit's variance, and the change of the limit for one standard deviation of it [g];
-    /// largest first. Parameters are drawn independently, so that parts add up to 1 but for curvature and chance.
-    fn parts(&self, plan: &Plan) -> Vec<(&'static str, &'static str, f64, f64)> {
+    /// What each parameter does to the limit, the largest first.
+    pub(super) fn parts(&self, plan: &Plan) -> Vec<Part> {
         let limit = &self.spreads[0];
         let count = limit.count as f64;
         let offset = limit.mean - limit.nominal.unwrap_or_default();
-        let mut parts: Vec<_> = plan
-            .parameters()
-            .into_iter()
-            .zip(&self.sums)
-            .map(|(parameter, [sum, squares, products])| {
-                let mean = sum / count;
-                let variance = (squares / count - mean * mean).max(0.0);
-                let covariance = products / count - mean * offset;
-                let slope_g = if variance > 0.0 { covariance / variance.sqrt() } else { 0.0 };
-                let whole = limit.squares / count;
-                let share = if whole > 0.0 { slope_g * slope_g / whole } else { 0.0 };
-                (parameter.symbol, parameter.name, share, slope_g)
-            })
-            .collect();
-        parts.sort_by(|a, b| b.2.total_cmp(&a.2));
-        parts
-    }
-
-    /// For people.
-    pub(super) fn text(&self, plan: &Plan) -> String {
-        let mut text = String::new();
-        let limit = &self.spreads[0];
-        let disturbed = match plan.case {
-            Case::Unbalance => "unbalance alone",
-            Case::Friction => "friction alone, rate of 0.1 rad/s reversed every 2 s",
-            Case::Both => "unbalance and friction, rate of 0.1 rad/s reversed every 2 s",
+        let part = |(parameter, [sum, squares, products]): (&'static Parameter, &[f64; 3])| {
+            let mean = sum / count;
+            let variance = (squares / count - mean * mean).max(0.0);
+            let covariance = products / count - mean * offset;
+            let slope_g = if variance > 0.0 { covariance / variance.sqrt() } else { 0.0 };
+            let whole = limit.squares / count;
+            let share = if whole > 0.0 { slope_g * slope_g / whole } else { 0.0 };
+            // A squared correlation r^2 of n draws scatters by 2 r (1 - r^2)/sqrt(n).
+            let scatter = 2.0 * share.sqrt() * (1.0 - share) / count.sqrt();
+            Part { parameter, share, scatter, slope_g }
         };
-        match limit.nominal {
-            Some(limit_g) => {
-                let _ = writeln!(text, "the nominal platform saturates at {limit_g:.2} g for 5 s ({disturbed})");
-            }
-            None => {
-                let _ = writeln!(text, "the nominal platform does not saturate within its range ({disturbed})");
-            }
-        }
-        let draws = matches!(plan.design, Design::Draws(_));
-        let parts = self.parts(plan);
-        if let Some((symbol, name, share, slope_g)) = parts.first().filter(|_| draws && limit.count > 1) {
-            let _ = writeln!(
-                text,
-                "the tolerance that decides it is that of {symbol} ({name}): {:.0} % of the limit's variance, {slope_g:+.2} g \
-                 for one standard deviation",
-                100.0 * share
-            );
-        }
-        let _ = writeln!(
-            text,
-            "{} runs, seed and plan {:016x}; peaks and velocity error at {} g",
-            self.runs,
-            plan.fingerprint(),
-            plan.accel_g
-        );
-        if self.unbuilt > 0 {
-            let _ = writeln!(
-                text,
-                "{} runs have an unstable loop or a value out of range: their cells are empty",
-                self.unbuilt
-            );
-        }
-        let missing = self.runs - self.unbuilt - limit.count;
-        if missing > 0 {
-            let _ = writeln!(text, "{missing} runs do not saturate within the model's range");
-        }
-        let _ = writeln!(text, "{} of {} runs are on a stop at {} g", self.limited, self.runs, plan.accel_g);
-        let _ = write!(text, "{:<24}{:>12}{:>12}", "", "nominal", "std");
-        for percent in PERCENT {
-            let _ = write!(text, "{percent:>11} %");
-        }
-        text.push('\n');
-        for (name, spread) in METRICS.iter().zip(&self.spreads).take(5) {
-            let _ = write!(text, "{name:<24}{:>12.5}{:>12.5}", spread.nominal.unwrap_or(f64::NAN), spread.deviation());
-            for percent in PERCENT {
-                let _ = write!(text, "{:>13.5}", spread.percentile(percent));
-            }
-            text.push('\n');
-        }
-        if draws {
-            text.push_str("part of the limit's variance, and its change for one standard deviation:\n");
-            for (symbol, name, share, slope_g) in parts.iter().filter(|part| part.2 > 0.005) {
-                let _ = writeln!(text, "  {symbol:<10}{:>6.1} %{slope_g:>+9.3} g   {name}", 100.0 * share);
-            }
-        }
-        text.truncate(text.trim_end().len());
-        text
-    }
-
-    /// For programs.
-    pub(super) fn json(&self, plan: &Plan) -> Value {
-        let spreads: serde_json::Map<String, Value> = METRICS
-            .iter()
-            .zip(&self.spreads)
-            .take(5)
-            .map(|(name, spread)| {
-                let percentiles: serde_json::Map<String, Value> =
-                    PERCENT.iter().map(|percent| (percent.to_string(), json!(spread.percentile(*percent)))).collect();
-                let value = json!({
-                    "nominal": spread.nominal,
-                    "runs": spread.count,
-                    "mean": spread.mean,
-                    "std": spread.deviation(),
-                    "percentiles": percentiles,
-                });
-                ((*name).to_owned(), value)
-            })
-            .collect();
-        let parts: Vec<Value> = self
-            .parts(plan)
-            .into_iter()
-            .map(|(symbol, name, share, slope_g)| {
-                json!({ "parameter": name, "symbol": symbol, "variance_share": share, "change_per_std_g": slope_g })
-            })
-            .collect();
-        json!({
-            "case": plan.case.name(),
-            "accel_g": plan.accel_g,
-            "runs": self.runs,
-            "unbuilt": self.unbuilt,
-            "limited": self.limited,
-            "metrics": spreads,
-            "decides": parts,
-        })
+        let mut parts: Vec<Part> = plan.parameters().into_iter().zip(&self.sums).map(part).collect();
+        parts.sort_by(|a, b| b.share.total_cmp(&a.share));
+        parts
     }
 }

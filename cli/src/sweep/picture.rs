@@ -7,13 +7,19 @@ use gimbal_log::AtomicFile;
 
 use super::answer::Answer;
 use super::plan::{Design, Plan, Range};
+use super::trial::Case;
 use crate::exit::Failure;
 use crate::plot::{Axis, Chart, Field, Look, Series, png, svg};
 
 /// Draws the saturation limit into a file.
 pub(super) fn draw(path: &Path, plan: &Plan, answer: &Answer) -> Result<(), Failure> {
     let limit = &answer.spreads[0];
-    let title = format!("Acceleration for 5 s at which the gyro meets its stop ({})", plan.case.name());
+    let disturbed = match plan.case {
+        Case::Unbalance => "unbalance alone",
+        Case::Friction => "friction alone",
+        Case::Both => "unbalance and friction",
+    };
+    let title = format!("Acceleration for 5 s at which the gyro meets its stop ({disturbed})");
     let label =
         |range: &Range| format!("{} ({}) [{}]", range.parameter.name, range.parameter.symbol, range.parameter.unit);
     let axis = |range: &Range| (range.from.min(range.to), range.from.max(range.to));
@@ -32,6 +38,7 @@ pub(super) fn draw(path: &Path, plan: &Plan, answer: &Answer) -> Result<(), Fail
                     label: "saturation [g]",
                     columns: usize::try_from(ranges[0].count).unwrap_or(1),
                     values: answer.grid.iter().map(|(_, limit_g)| *limit_g).collect(),
+                    missing: "loop unstable, or no saturation within the range",
                 }),
             }
         }

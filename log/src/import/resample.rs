@@ -14,7 +14,7 @@ pub struct Span {
 /// A log at a constant rate, and what was done to get there.
 #[derive(Debug, Clone)]
 pub struct Resampled {
-    /// The log; extra columns are left out, because text has no value between two rows.
+    /// The log; extra columns of numbers are in it, others are left out, because text has no value between two rows.
     pub log: Log,
     /// Time stamps of the source.
     pub source: TimeReport,
@@ -82,13 +82,23 @@ pub fn resample(source: &Log, rate_hz: f64, from_s: f64, to_s: f64) -> Result<Re
             .map(|pair| Span { from_s: pair[0], to_s: pair[1] })
             .collect(),
         bridged_missing: Vec::new(),
-        dropped: source.extras().iter().map(|extra| extra.name.clone()).collect(),
+        dropped: Vec::new(),
     };
+    let means = |values: &[f64]| groups.iter().map(|&(from, to)| mean(&kept[from..to], values)).collect::<Vec<f64>>();
+    let points = |means: Vec<f64>| -> Vec<(f64, f64)> {
+        instants_s.iter().copied().zip(means).filter(|(_, value)| !value.is_nan()).collect()
+    };
+    for extra in source.extras() {
+        match extra.all_numbers() {
+            Some(values) => {
+                result.log.push_extra(&extra.name, &along(&points(means(&values)), &ticks_s));
+            }
+            None => result.dropped.push(extra.name.clone()),
+        }
+    }
     for column in Column::ALL.into_iter().filter(|column| *column != Column::Time) {
         let Some(values) = source.column(column) else { continue };
-        let means: Vec<f64> = groups.iter().map(|&(from, to)| mean(&kept[from..to], values)).collect();
-        let points: Vec<(f64, f64)> =
-            instants_s.iter().copied().zip(means).filter(|(_, value)| !value.is_nan()).collect();
+        let points = points(means(values));
         let missing = instants_s.len() - points.len();
         if missing > 0 {
             result.bridged_missing.push((column, missing));
@@ -155,10 +165,10 @@ mod tests {
 
     #[test]
     fn closed_form_a_straight_line_stays_one_through_gaps_and_repeats() {
-        let mut text = "time_s,accel_x_mps2,accel_y_mps2,accel_z_mps2,vehicle_rate_radps,note\n".to_owned();
+        let mut text = "time_s,accel_x_mps2,accel_y_mps2,accel_z_mps2,vehicle_rate_radps,note,height\n".to_owned();
         for time_s in [-0.02, -0.01, 0.0, 0.01, 0.01, 0.02, 0.06, 0.07] {
             let missing = if time_s > 0.015 && time_s < 0.03 { String::new() } else { format!("{}", 3.0 * time_s) };
-            let _ = writeln!(text, "{time_s},{missing},0,9.8,{},x", 1.0 - time_s);
+            let _ = writeln!(text, "{time_s},{missing},0,9.8,{},x,{}", 1.0 - time_s, 100.0 + time_s);
         }
         let source = Log::from_source(text.as_bytes(), "x.csv", Needs::Run).expect("reads");
         let result = resample(&source, 1000.0, f64::NEG_INFINITY, f64::INFINITY).expect("two rows");
@@ -171,6 +181,9 @@ mod tests {
         assert_eq!((result.averaged_rows, result.bridged.len()), (1, 1));
         assert_eq!(result.bridged_missing, [(Column::AccelX, 1)]);
         assert_eq!(result.dropped, ["note"]);
+        let height = &result.log.extras()[0];
+        assert!(height.name == "height" && result.log.extras().len() == 1);
+        assert!(height.numbers().iter().zip(time_s).all(|(height, time_s)| (height - 100.0 - time_s).abs() < 1e-12));
     }
 
     #[test]
