@@ -30,6 +30,7 @@ const FONT: &str = "sans-serif";
 const INK: RGBColor = RGBColor(34, 34, 34);
 const GRID: RGBColor = RGBColor(214, 214, 214);
 const SHADE: RGBColor = RGBColor(222, 204, 160);
+const BAND: RGBColor = RGBColor(196, 212, 228);
 
 /// Letters of all pictures: their widths lay the SVG out, their shapes fill the bitmap.
 static LETTERS: &[u8] = include_bytes!("plot/dejavu-sans-subset.ttf");

@@ -14,6 +14,7 @@ use crate::plot::{self, Envelope, Figure, Line, Panel};
 struct Drawn {
     titles: [String; 2],
     phi: Envelope,
+    estimate: Envelope,
     band: [Envelope; 2],
     error: Envelope,
     bounds: [Envelope; 2],
@@ -21,17 +22,15 @@ struct Drawn {
 
 impl Drawn {
     fn new(course: &Course, axis: &Axis) -> Self {
-        let titles = [
-            format!("phi{} within the estimate's 2 sigma", axis.suffix),
-            format!("Estimate less truth{}", axis.suffix),
-        ];
-        let [phi, error] = [(); 2].map(|()| Envelope::new());
+        let titles = [format!("phi{}", axis.suffix), format!("Estimate less truth{}", axis.suffix)];
+        let [phi, estimate, error] = [(); 3].map(|()| Envelope::new());
         let [band, bounds] = [(); 2].map(|()| [Envelope::new(), Envelope::new()]);
-        let mut drawn = Self { titles, phi, band, error, bounds };
+        let mut drawn = Self { titles, phi, estimate, band, error, bounds };
         for k in course.shown() {
             let (time_s, truth, angle) = (course.times_s[k], axis.truth_rad[k], axis.angle_rad[k]);
             let two_sigma = 2.0 * axis.bound_rad[k];
             drawn.phi.push(time_s, truth);
+            drawn.estimate.push(time_s, angle);
             drawn.error.push(time_s, angle - truth);
             for (place, sign) in [1.0, -1.0].into_iter().enumerate() {
                 drawn.band[place].push(time_s, angle + sign * two_sigma);
@@ -42,12 +41,12 @@ impl Drawn {
     }
 
     fn panels(&self) -> [Panel<'_>; 2] {
-        let [high, low] = &self.band;
-        let [plus, minus] = &self.bounds;
-        let truth =
-            vec![Line::new("true", &self.phi), Line::new("estimate + 2 sigma", high), Line::new("- 2 sigma", low)];
-        let error = vec![Line::new("error", &self.error), Line::new("+ 2 sigma", plus), Line::new("- 2 sigma", minus)];
-        [Panel::new(&self.titles[0], "rad", truth), Panel::new(&self.titles[1], "rad", error)]
+        let truth = vec![Line::new("estimate", &self.estimate), Line::new("true", &self.phi)];
+        let error = vec![Line::new("error", &self.error)];
+        [
+            Panel::new(&self.titles[0], "rad", truth).with_band("estimate +- 2 sigma", &self.band),
+            Panel::new(&self.titles[1], "rad", error).with_band("+- 2 sigma", &self.bounds),
+        ]
     }
 }
 

@@ -14,7 +14,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{FONT, GRID, INK, LEFT, Picture, RIGHT, SHADE, STYLES, WIDTH, clipped, simplified};
+use super::{BAND, FONT, GRID, INK, LEFT, Picture, RIGHT, SHADE, STYLES, WIDTH, clipped, simplified};
 use axis::{along, rounded};
 use dashes::dashes;
 use legend::ROW;
@@ -26,7 +26,6 @@ const BOTTOM: i32 = 64;
 const LOWER: i32 = 2;
 /// Room for a field's scale right of it.
 const SCALE_ROOM: i32 = 120;
-const BAND: RGBColor = RGBColor(216, 226, 236);
 
 /// How a series is drawn: a line of one of the three styles, or marks in its colour.
 #[derive(Debug, Clone, Copy)]

@@ -82,6 +82,12 @@ impl Envelope {
         points
     }
 
+    /// The polyline along its largest values, or its least.
+    pub(crate) fn edge(&self, largest: bool) -> Vec<(f64, f64)> {
+        let value = |slot: &Slot| if largest { slot.most } else { slot.least };
+        self.slots.iter().flat_map(|slot| [(slot.from_s, value(slot)), (slot.to_s, value(slot))]).collect()
+    }
+
     /// Whether it is zero throughout.
     pub(crate) fn is_zero(&self) -> bool {
         self.slots.iter().all(|slot| slot.least == 0.0 && slot.most == 0.0)

@@ -7,8 +7,8 @@ use plotters::prelude::*;
 
 use super::unit::shown;
 use super::{
-    Envelope, FONT, GRID, INK, LEFT, Picture, RIGHT, SHADE, STYLES, WIDTH, clipped, decimal, draw_sample, simplified,
-    svg, width_of,
+    BAND, Envelope, FONT, GRID, INK, LEFT, Picture, RIGHT, SHADE, STYLES, WIDTH, clipped, decimal, draw_sample,
+    simplified, svg, width_of,
 };
 
 const TITLE_HEIGHT: u32 = 44;
@@ -37,17 +37,38 @@ impl<'a> Line<'a> {
     }
 }
 
+/// The area between two signals.
+struct Band<'a> {
+    name: &'a str,
+    /// Along the upper one and back along the lower one.
+    edge: Vec<(f64, f64)>,
+}
+
 /// Lines that share a unit.
 pub(crate) struct Panel<'a> {
     title: &'a str,
     unit: &'a str,
     lines: Vec<Line<'a>>,
+    band: Option<Band<'a>>,
 }
 
 impl<'a> Panel<'a> {
     /// A panel.
     pub(crate) fn new(title: &'a str, unit: &'a str, lines: Vec<Line<'a>>) -> Self {
-        Self { title, unit, lines }
+        Self { title, unit, lines, band: None }
+    }
+
+    /// With the area between two signals behind the lines.
+    pub(crate) fn with_band(self, name: &'a str, [upper, lower]: &[Envelope; 2]) -> Self {
+        let mut edge = upper.edge(true);
+        edge.extend(lower.edge(false).into_iter().rev());
+        Self { band: Some(Band { name, edge }), ..self }
+    }
+
+    /// Everything that must be on paper.
+    fn values(&self) -> impl Iterator<Item = f64> {
+        let lines = self.lines.iter().flat_map(|line| &line.points);
+        lines.chain(self.band.iter().flat_map(|band| &band.edge)).map(|(_, value)| *value)
     }
 }
 
@@ -104,9 +125,8 @@ impl Figure<'_> {
     where
         B::ErrorType: 'static,
     {
-        let values = || panel.lines.iter().flat_map(|line| line.points.iter().map(|(_, value)| *value));
-        let least = values().fold(0.0, f64::min);
-        let most = values().fold(0.0, f64::max);
+        let least = panel.values().fold(0.0, f64::min);
+        let most = panel.values().fold(0.0, f64::max);
         let (factor, unit) = shown(panel.unit, most.max(-least));
         let (least, most) = if most > least { (least * factor, most * factor) } else { (-1.0, 1.0) };
         let margin = 0.06 * (most - least);
@@ -123,6 +143,10 @@ impl Figure<'_> {
         let spans =
             self.shaded.iter().map(|&(from_s, to_s)| [(from_s, corners[0]), (to_s.max(from_s + least_s), corners[1])]);
         chart.draw_series(spans.map(|corners| Rectangle::new(corners, SHADE.filled())))?;
+        if let Some(band) = &panel.band {
+            let edge = band.edge.iter().map(|&(time_s, value)| (time_s, value * factor)).collect::<Vec<_>>();
+            chart.draw_series(std::iter::once(Polygon::new(edge, BAND.filled())))?;
+        }
         let mut mesh = chart.configure_mesh();
         mesh.light_line_style(TRANSPARENT)
             .bold_line_style(GRID)
@@ -178,10 +202,13 @@ impl Figure<'_> {
             draw_sample(area, (x - 40, x - 8, y), (color, width, dash))?;
             x -= 64;
         }
-        if first && !self.shaded.is_empty() {
-            x -= width_of(self.shaded_name) - 24;
-            area.draw(&Rectangle::new([(x - 26, y - 6), (x - 8, y + 6)], SHADE.filled()))?;
-            area.draw(&Text::new(self.shaded_name.to_owned(), (x, 6), font()))?;
+        let shade = (self.shaded_name, SHADE);
+        let shades = panel.band.iter().map(|band| (band.name, BAND));
+        for (name, color) in shades.chain((first && !self.shaded.is_empty()).then_some(shade)) {
+            x -= width_of(name) - 12;
+            area.draw(&Rectangle::new([(x - 26, y - 6), (x - 8, y + 6)], color.filled()))?;
+            area.draw(&Text::new(name.to_owned(), (x, 6), font()))?;
+            x -= 66;
         }
         Ok(())
     }

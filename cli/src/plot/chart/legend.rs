@@ -6,8 +6,8 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::super::{INK, LEFT, RIGHT, SHADE, STYLES, WIDTH, draw_sample, width_of};
-use super::{BAND, Chart, LOWER, Look, TOP, draw_mark, label};
+use super::super::{BAND, INK, LEFT, RIGHT, SHADE, STYLES, WIDTH, draw_sample, width_of};
+use super::{Chart, LOWER, Look, TOP, draw_mark, label};
 
 /// Height of one row of the legend.
 pub(super) const ROW: i32 = 24;
