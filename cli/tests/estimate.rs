@@ -70,7 +70,9 @@ fn flown_on_three_gimbals(bench: &Bench, file: &str, with_truth: bool) {
             text,
             ",vehicle_rate_radps_{axis},relative_angle_rad_{axis},gyro_angle_rad_{axis},motor_torque_nm_{axis}"
         );
-        text += &if with_truth { format!(",gimbal_angle_rad_{axis}") } else { String::new() };
+        if with_truth {
+            let _ = write!(text, ",gimbal_angle_rad_{axis}");
+        }
     }
     for (k, (row, sample)) in rows.iter().zip(plants.run(rows.iter().copied())).enumerate() {
         let _ = write!(text, "\n{}", k as f64 * 1e-3);

@@ -46,8 +46,8 @@ struct Course {
     /// By axis, whether the gyro was on a stop, and what of phi it had not seen.
     on_stop: [bool; 3],
     not_seen: Vector,
-    /// What was moved on stops: about the loops' axes, and in the stable member's axes [rad].
-    on_stops: Vector,
+    /// What phi has moved on stops: about the loops' axes, and in the stable member's [rad].
+    moved: Vector,
     kept: Vector,
     velocity: Vector,
     accel_error: Vector,
@@ -88,7 +88,7 @@ impl Platform {
             own: [0.0; 3],
             on_stop: [false; 3],
             not_seen: [0.0; 3],
-            on_stops: [0.0; 3],
+            moved: [0.0; 3],
             kept: [0.0; 3],
             velocity: [0.0; 3],
             accel_error: [0.0; 3],
@@ -115,9 +115,8 @@ impl Platform {
         let accel_error = cross(input.accel_mps2, attitude_error_rad);
         if !course.first {
             let period_s = self.plants[0].period_s();
-            for axis in 0..3 {
-                course.velocity[axis] += 0.5 * period_s * (course.accel_error[axis] + accel_error[axis]);
-            }
+            let change = sum(course.accel_error, accel_error).map(|error| 0.5 * period_s * error);
+            course.velocity = sum(course.velocity, change);
         }
         (course.accel_error, course.first) = (accel_error, false);
         PlatformSample { attitude_error_rad, velocity_error_mps: course.velocity, axes }
@@ -155,37 +154,28 @@ impl Platform {
     /// phi in the stable member's axes.
     fn gather(&self, course: &mut Course, axes: &[Sample; 3], to_middle: &Matrix) -> Vector {
         let to_inner = transposed(to_middle);
-        let (mut turning, mut change) = ([0.0; 3], [0.0; 3]);
-        for axis in 0..3 {
+        let not_seen = std::array::from_fn(|axis| {
             let (sample, gyro) = (&axes[axis], &self.loops[axis].gyro);
             let seen =
                 gyro.float_inertia_kg_m2 * sample.gyro_rate_radps + gyro.damping_nm_s_per_rad * sample.gyro_angle_rad;
-            let on_stop = sample.stop != Stop::Free;
-            let not_seen = sample.gimbal_angle_rad - seen / gyro.angular_momentum_nm_s;
-            if on_stop || course.on_stop[axis] {
-                change[axis] = not_seen - course.not_seen[axis];
-            }
-            course.on_stop[axis] = on_stop;
-            course.not_seen[axis] = not_seen;
-            turning[axis] = sample.gimbal_angle_rad;
-        }
+            sample.gimbal_angle_rad - seen / gyro.angular_momentum_nm_s
+        });
+        let on_stop = axes.map(|sample| sample.stop != Stop::Free);
+        let moved = std::array::from_fn(|axis| {
+            let hidden = on_stop[axis] || course.on_stop[axis];
+            if hidden { not_seen[axis] - course.not_seen[axis] } else { 0.0 }
+        });
+        (course.on_stop, course.not_seen) = (on_stop, not_seen);
+        course.moved = sum(course.moved, moved);
+        course.kept = sum(course.kept, times(&to_inner, moved));
         // What has moved on a stop is in the loop's angle too, and does not turn.
-        course.moved(change, &to_inner);
-        let free = std::array::from_fn(|axis| turning[axis] - course.on_stops[axis]);
-        let turned = times(&to_inner, free);
-        std::array::from_fn(|axis| turned[axis] + course.kept[axis])
+        let turning = std::array::from_fn(|axis| axes[axis].gimbal_angle_rad - course.moved[axis]);
+        sum(times(&to_inner, turning), course.kept)
     }
 }
 
-impl Course {
-    /// Adds what a stop has hidden.
-    fn moved(&mut self, change: Vector, to_inner: &Matrix) {
-        let turned = times(to_inner, change);
-        for axis in 0..3 {
-            self.on_stops[axis] += change[axis];
-            self.kept[axis] += turned[axis];
-        }
-    }
+fn sum(a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|axis| a[axis] + b[axis])
 }
 
 fn times(m: &Matrix, v: Vector) -> Vector {

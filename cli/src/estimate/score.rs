@@ -103,8 +103,8 @@ fn velocity_error_mps(course: &Course) -> [f64; 3] {
     let mut velocity = [0.0; 3];
     for k in 1..course.accels_mps2.len() {
         let (before, now) = (at(k - 1), at(k));
-        for axis in 0..3 {
-            velocity[axis] += 0.5 * course.period_s * (before[axis] + now[axis]);
+        for (velocity, (before, now)) in velocity.iter_mut().zip(before.into_iter().zip(now)) {
+            *velocity += 0.5 * course.period_s * (before + now);
         }
     }
     velocity

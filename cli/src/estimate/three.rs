@@ -119,9 +119,9 @@ fn estimated<N: System>(config: &platform::Config, logs: &[Log; 3]) -> Result<Co
         let measured = law.measured(cells(Column::GyroAngle, k), cells(Column::MotorTorque, k));
         let estimate = law.estimate(&mut state, &measured);
         let (angle, bound) = (law.angle_rad(estimate.attitude_error_rad), law.angle_rad(estimate.bound_rad));
-        for axis in 0..3 {
-            angles[axis].0.push(angle[axis]);
-            angles[axis].1.push(bound[axis]);
+        for ((angles, bounds), (angle, bound)) in angles.iter_mut().zip(angle.into_iter().zip(bound)) {
+            angles.push(angle);
+            bounds.push(bound);
         }
         flags.push(estimate.flags);
     }
