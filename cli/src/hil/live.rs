@@ -14,6 +14,8 @@ use crate::plot::Envelope;
 
 /// Ticks between two looks at the terminal.
 const EVERY: u32 = 50;
+/// Ticks without a running estimate from which on the picture is shaded: a single one is narrower than a pixel.
+pub(crate) const GAP: u32 = 10;
 /// Width that every terminal has.
 const COLUMNS: usize = 78;
 /// Stop of the paper's gyro, for the margin shown.
@@ -31,7 +33,9 @@ pub(crate) struct Live {
     pub(crate) rate: Envelope,
     pub(crate) accel: Envelope,
     pub(crate) torque: Envelope,
+    /// 1 where no running estimate has come for [`GAP`] ticks.
     pub(crate) not_running: Envelope,
+    gap: u32,
 }
 
 impl Live {
@@ -59,6 +63,7 @@ impl Live {
             accel: line(),
             torque: line(),
             not_running: line(),
+            gap: 0,
         }
     }
 
@@ -116,7 +121,8 @@ impl Live {
         self.rate.push(time_s, live.moment.row.vehicle_rate_radps);
         self.accel.push(time_s, live.moment.row.accel_y_mps2);
         let running = live.estimate.filter(|estimate: &&Estimate| estimate.mode == Mode::Running);
-        self.not_running.push(time_s, f64::from(u8::from(running.is_none())));
+        self.gap = if running.is_some() { 0 } else { self.gap + 1 };
+        self.not_running.push(time_s, f64::from(u8::from(self.gap >= GAP)));
         if let Some(estimate) = running {
             let (angle, bound) = (f64::from(estimate.gimbal_angle_rad), 2.0 * f64::from(estimate.bound_rad));
             self.estimate.push(time_s, angle);

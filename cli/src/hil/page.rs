@@ -5,7 +5,7 @@ use std::fmt::Write;
 use gimbal_bench::report::{started, value};
 use gimbal_bench::run::{Outcome, Pace, Verdict};
 
-use super::live::Live;
+use super::live::{GAP, Live};
 use crate::exit::Failure;
 use crate::plot::{Figure, Line, Panel};
 
@@ -105,7 +105,8 @@ fn picture(live: &Live) -> Result<String, Failure> {
         Panel::new("Specific force along y", "m/s2", vec![Line::new("true", &live.accel)]),
         Panel::new("Vehicle rate", "rad/s", vec![Line::new("true", &live.rate)]),
     ];
-    let figure = Figure { title: "Platform and estimate", panels, shaded: &shaded, shaded_name: "no running estimate" };
+    let shaded_name = format!("no running estimate for {GAP} ticks");
+    let figure = Figure { title: "Platform and estimate", panels, shaded: &shaded, shaded_name: &shaded_name };
     let svg = figure.draw().map_err(|error| Failure::Environment(anyhow::Error::msg(error)))?;
     Ok(svg[svg.find("<svg").unwrap_or(0)..].to_owned())
 }
