@@ -27,8 +27,8 @@ pub(crate) struct Live {
     pub(crate) truth: Envelope,
     pub(crate) estimate: Envelope,
     pub(crate) error: Envelope,
-    pub(crate) bound: Envelope,
-    pub(crate) under: Envelope,
+    /// Twice the bound, above and below.
+    pub(crate) bounds: [Envelope; 2],
     pub(crate) theta: Envelope,
     pub(crate) rate: Envelope,
     pub(crate) accel: Envelope,
@@ -56,8 +56,7 @@ impl Live {
             truth: line(),
             estimate: line(),
             error: line(),
-            bound: line(),
-            under: line(),
+            bounds: [line(), line()],
             theta: line(),
             rate: line(),
             accel: line(),
@@ -123,14 +122,17 @@ impl Live {
         let running = live.estimate.filter(|estimate: &&Estimate| estimate.mode == Mode::Running);
         self.gap = if running.is_some() { 0 } else { self.gap + 1 };
         self.not_running.push(time_s, f64::from(u8::from(self.gap >= GAP)));
+        if let Some(estimate) = live.estimate {
+            // In mode safe zero: what the computer lets out.
+            self.estimate.push(time_s, f64::from(estimate.gimbal_angle_rad));
+        }
         if let Some(estimate) = running {
             let (angle, bound) = (f64::from(estimate.gimbal_angle_rad), 2.0 * f64::from(estimate.bound_rad));
-            self.estimate.push(time_s, angle);
             self.error.push(time_s, angle - truth.gimbal_angle_rad);
             // The first rows know nothing, and would hide all the others.
             if time_s >= 0.2 {
-                self.bound.push(time_s, bound);
-                self.under.push(time_s, -bound);
+                self.bounds[0].push(time_s, bound);
+                self.bounds[1].push(time_s, -bound);
             }
         }
     }

@@ -91,15 +91,8 @@ fn picture(live: &Live) -> Result<String, Failure> {
     let shaded = live.not_running.spans_above(0.5);
     let panels = vec![
         Panel::new("phi", "rad", vec![Line::new("true", &live.truth), Line::new("estimate", &live.estimate)]),
-        Panel::new(
-            "Estimate less truth",
-            "rad",
-            vec![
-                Line::new("error", &live.error),
-                Line::new("+ 2 sigma", &live.bound),
-                Line::new("- 2 sigma", &live.under),
-            ],
-        ),
+        Panel::new("Estimate less truth", "rad", vec![Line::new("error", &live.error)])
+            .with_band("+- 2 sigma", &live.bounds),
         Panel::new("theta", "rad", vec![Line::new("true", &live.theta)]),
         Panel::new("Motor torque", "N m", vec![Line::new("true", &live.torque)]),
         Panel::new("Specific force along y", "m/s2", vec![Line::new("true", &live.accel)]),
