@@ -9,6 +9,7 @@
 
 mod fixed;
 pub(crate) mod float;
+mod product;
 
 pub use fixed::Fixed;
 

@@ -10,6 +10,7 @@
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::Number;
+use super::product::product;
 use crate::stored::{Reader, Stored, Writer, load_signal, store_signal};
 use crate::table::SqrtTable;
 
@@ -87,7 +88,7 @@ impl Mul<Fixed> for Coef {
     type Output = Wide;
     #[inline(always)]
     fn mul(self, signal: Fixed) -> Wide {
-        Wide(i64::from(self.0) * i64::from(signal.0))
+        Wide(product(self.0, signal.0))
     }
 }
 
@@ -174,7 +175,7 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn product(self, other: Self) -> Wide {
-        Wide(i64::from(self.0) * i64::from(other.0))
+        Wide(product(self.0, other.0))
     }
 
     #[inline(always)]
@@ -225,7 +226,7 @@ impl Number for Fixed {
     /// With `s = m / 4^k`, `1/4 <= m < 1`: the table's chord at m, over 2^k.
     #[inline(always)]
     fn hypot(self, other: Self, table: &SqrtTable<Self>) -> Self {
-        let square = i64::from(self.0) * i64::from(self.0) + i64::from(other.0) * i64::from(other.0);
+        let square = product(self.0, self.0) + product(other.0, other.0);
         // Two components near the full scale have a root beyond it: the upper word has room up to 2, as 30 bits of
         // fraction, and never its sign bit. A one more at the end keeps the leading one defined.
         let positive = (square >> 32) as u32 | 1;
@@ -292,7 +293,7 @@ impl Number for Fixed {
     #[inline(always)]
     fn count(left: Self, scaled: Self, carry: &mut Self) -> i32 {
         // The carry is the product's lower word, without sign.
-        let exact = i64::from(left.0) * i64::from(scaled.0) + i64::from(carry.0 as u32);
+        let exact = product(left.0, scaled.0) + i64::from(carry.0 as u32);
         *carry = Self(exact as i32);
         (exact >> 32) as i32
     }
@@ -309,7 +310,7 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn count_coarse(left: Self, scaled: Self, scale: u32, carry: &mut i64) -> i32 {
-        let exact = i64::from(left.0) * i64::from(scaled.0) + *carry;
+        let exact = product(left.0, scaled.0) + *carry;
         let high = (exact >> 32) as i32;
         let whole = high.wrapping_shr(scale);
         *carry = exact - (i64::from(whole.wrapping_shl(scale)) << 32);
