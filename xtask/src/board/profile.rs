@@ -10,14 +10,18 @@ use super::emulator;
 use super::toolchain::Toolchain;
 use crate::elf::{self, Image};
 use crate::shell::{capture, program};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Instructions by name of function, and the number of steps that they come from.
-type Table = (BTreeMap<String, u64>, u64);
+/// Instructions by name of function, the number of steps that they come from, and on a Cortex-M0 their clocks.
+struct Table {
+    by_name: BTreeMap<String, u64>,
+    steps: u64,
+    clocks: Option<u64>,
+}
 
 pub(crate) fn print(board: &str) -> Result<()> {
     let board = boards::by_name(board)?;
@@ -25,7 +29,8 @@ pub(crate) fn print(board: &str) -> Result<()> {
         bail!("the profile is made for Arm boards alone");
     }
     let path = build(&board)?;
-    let functions = elf::functions(&Image::read(&path)?)?;
+    let image = Image::read(&path)?;
+    let functions = elf::functions(&image)?;
     let loader = addr2line::Loader::new(&path).map_err(|error| anyhow!("{}: {error}", path.display()))?;
     for (address, function) in &functions {
         if !function.name().ends_with("Counter::count::call") {
@@ -33,7 +38,14 @@ pub(crate) fn print(board: &str) -> Result<()> {
         }
         let reached = elf::addresses(&functions, *address);
         let ranges: Vec<(u32, u32)> = reached.iter().map(|start| (*start, functions[start].bytes)).collect();
-        let table = read(&trace(&board, &path, &ranges)?, *address, &loader)?;
+        let entry = (*address, address + function.bytes);
+        let run = read(&trace(&board, &path, &ranges)?, entry, &image)?;
+        let clocks = (board.core == "Cortex-M0").then_some(run.clocks);
+        let mut by_name = BTreeMap::new();
+        for (address, count) in run.by_address {
+            *by_name.entry(name_of(address, &loader)?).or_default() += count;
+        }
+        let table = Table { by_name, steps: run.steps, clocks };
         print_table(&table);
     }
     Ok(())
@@ -70,20 +82,50 @@ fn trace(board: &Board, image: &Path, ranges: &[(u32, u32)]) -> Result<PathBuf> 
     Ok(log)
 }
 
-/// Adds the trace up; a step begins at `entry`.
-fn read(log: &Path, entry: u32, loader: &addr2line::Loader) -> Result<Table> {
-    let mut by_address: BTreeMap<u32, u64> = BTreeMap::new();
+/// A trace added up.
+#[derive(Default)]
+struct Run {
+    by_address: BTreeMap<u32, u64>,
+    steps: u64,
+    /// Were the core a Cortex-M0.
+    clocks: u64,
+}
+
+/// Adds the trace up. A step begins at the start of the function `entry` and ends with a return in it; between two steps
+/// the functions that a step calls may be called by others.
+fn read(log: &Path, entry: (u32, u32), image: &Image) -> Result<Run> {
+    let mut run = Run::default();
+    let mut last = None;
     for line in BufReader::new(File::open(log)?).lines() {
         let line = line?;
         let Some(field) = line.split('/').nth(1) else { continue };
-        *by_address.entry(u32::from_str_radix(field, 16)?).or_default() += 1;
+        let address = u32::from_str_radix(field, 16)?;
+        // Noted twice: no instruction of a step goes to itself.
+        if last == Some(address) {
+            continue;
+        }
+        if let Some(before) = last {
+            let instruction = image.half_word(before).context("code outside the image")?;
+            run.clocks += u64::from(elf::cortex_m0(instruction, address == before + 2));
+            if (entry.0..entry.1).contains(&before) && is_return(instruction) {
+                last = None;
+            }
+        }
+        if address == entry.0 {
+            run.steps += 1;
+        } else if last.is_none() {
+            continue;
+        }
+        *run.by_address.entry(address).or_default() += 1;
+        last = Some(address);
     }
-    let steps = *by_address.get(&entry).context("no step in the trace")?;
-    let mut by_name = BTreeMap::new();
-    for (address, count) in by_address {
-        *by_name.entry(name_of(address, loader)?).or_default() += count;
-    }
-    Ok((by_name, steps))
+    ensure!(run.steps > 0, "no step in the trace");
+    Ok(run)
+}
+
+/// `pop {.., pc}` of either length, `bx lr`.
+fn is_return(instruction: u16) -> bool {
+    instruction & 0xFF00 == 0xBD00 || instruction == 0xE8BD || instruction == 0x4770
 }
 
 /// File and function of the source that the instruction belongs to; arithmetic falls to the function that calls it.
@@ -110,7 +152,7 @@ fn name_of(address: u32, loader: &addr2line::Loader) -> Result<String> {
 /// Files whose functions are operations, not blocks of the model.
 const ARITHMETIC: [&str; 2] = ["number", "row"];
 
-fn print_table((by_name, steps): &Table) {
+fn print_table(Table { by_name, steps, clocks }: &Table) {
     let mut rows: Vec<(&String, &u64)> = by_name.iter().collect();
     rows.sort_by_key(|(name, count)| (std::cmp::Reverse(**count), (*name).clone()));
     let total: u64 = by_name.values().sum();
@@ -119,6 +161,9 @@ fn print_table((by_name, steps): &Table) {
         format!("{}.{}", tenths / 10, tenths % 10)
     };
     println!("{:>9}  instructions a step, mean of {steps}", mean(total));
+    if let Some(clocks) = clocks {
+        println!("{:>9}  clocks of a Cortex-M0", mean(*clocks));
+    }
     for (name, count) in rows {
         println!("{:>9}  {name}", mean(*count));
     }

@@ -1,11 +1,13 @@
 //! What the images contain, read from the binary itself.
 
+mod clocks;
 mod code;
 mod reach;
 mod riscv;
 mod stack_sizes;
 mod thumb;
 
+pub(crate) use clocks::cortex_m0;
 pub(crate) use code::{Function, functions};
 pub(crate) use reach::{Reach, addresses};
 pub(crate) use stack_sizes::stack_sizes;
@@ -89,6 +91,15 @@ impl Image {
         let (_, &is_data) = self.mapping.range(..=address).next_back()?;
         let end = self.mapping.range(address + 1..).next().map_or(u32::MAX, |(&end, _)| end);
         is_data.then_some(end)
+    }
+
+    /// The half word at an address.
+    pub(crate) fn half_word(&self, address: u32) -> Option<u16> {
+        self.sections.iter().filter(|section| section.loaded).find_map(|section| {
+            let at = address.checked_sub(section.address)? as usize;
+            let bytes = section.data.get(at..at + 2)?;
+            Some(u16::from_le_bytes([bytes[0], bytes[1]]))
+        })
     }
 
     /// Bytes of all sections whose name starts so.
