@@ -103,9 +103,11 @@ impl<N: Number> Law<N> {
     pub(crate) fn at(&self, tables: &Tables<N>, accel: [N; 3], rate: N, faults: &mut Faults) -> N {
         let [accel_x, accel_y, accel_z] = accel;
         let mut radial = accel_x.hypot(accel_y, &tables.sqrt);
-        if radial > self.largest_radial {
-            radial = self.largest_radial;
-            *faults |= Faults::TABLE_END;
+        // Of values without a sign the bits are in the same order, and no flag of a float has to be fetched.
+        if radial.to_bits() > self.largest_radial.to_bits() {
+            let end;
+            (radial, end) = self.end_of_tables();
+            *faults |= end;
         }
         let axial = accel_z.abs();
         let power = tables.power.at(self.static_load(axial, radial));
@@ -113,6 +115,13 @@ impl<N: Number> Law<N> {
         let viscous =
             if rate.beyond(self.viscous_break) { tables.viscous_high.at(rate.abs()) } else { self.viscous_low };
         power.times(load).times_power(self.shift) + viscous
+    }
+
+    /// The largest radial acceleration and its bit: by a branch, for selected they would be on the straight path.
+    #[cold]
+    #[inline(never)]
+    fn end_of_tables(&self) -> (N, Faults) {
+        core::hint::black_box((self.largest_radial, Faults::TABLE_END))
     }
 
     /// `F_s`.
