@@ -1,6 +1,6 @@
 /* The 1 kHz call in C: the step in the timer's interrupt, its output to the main loop by a queue of one producer and one
- * consumer. Ten seconds of flight on an emulated Cortex-M4F; the digest of all outputs is that of the Rust library on the
- * host. Built and run by `cargo xtask test --only c-interface`. */
+ * consumer, in single precision and in fixed point side by side. Ten seconds of flight on an emulated Cortex-M4F; the
+ * digests of all outputs are those of the Rust library on the host. Built and run by `cargo xtask test --only c-interface`. */
 #include "gimbal_servo.h"
 #include "flight_rows.h"
 #include "semihosting.h"
@@ -13,6 +13,9 @@ static struct GimbalConfig config;
 static struct GimbalLawF32 law;
 static struct GimbalStateF32 state;
 static struct GimbalOutputF32 queue[QUEUE];
+static struct GimbalLawFixed fixed_law;
+static struct GimbalStateFixed fixed_state;
+static struct GimbalOutputFixed fixed_queue[QUEUE];
 static volatile uint32_t written, taken;
 
 /* Row k of the flight: 100 rows a second, interpolated linearly. Your sensors' reading goes here. */
@@ -38,30 +41,38 @@ void SysTick_Handler(void)
     if (written < STEPS && written - taken < QUEUE) {
         struct GimbalInputF32 input = row(written);
         gimbal_f32_step(&law, &state, &input, &queue[written % QUEUE]);
+        struct GimbalInputFixed fractions;
+        gimbal_fixed_input(&fixed_law, &input, &fractions);
+        gimbal_fixed_step(&fixed_law, &fixed_state, &fractions, &fixed_queue[written % QUEUE]);
         written = written + 1u;
     }
 }
 
-static uint64_t digest = 0xCBF29CE484222325u; /* FNV-1a */
+#define FNV_BASIS 0xCBF29CE484222325u /* FNV-1a */
+static uint64_t digest = FNV_BASIS, fixed_digest = FNV_BASIS;
 
-static void add(const void *bytes, uint32_t count)
+static void add(uint64_t *sum, const void *bytes, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
-        digest = (digest ^ ((const uint8_t *)bytes)[i]) * 0x100000001B3u;
+        *sum = (*sum ^ ((const uint8_t *)bytes)[i]) * 0x100000001B3u;
 }
 
-static void add_output(const struct GimbalOutputF32 *output)
+/* Both outputs begin with nine signals of four bytes. */
+static void add_output(uint64_t *sum, const void *signals, int8_t stop, uint16_t faults)
 {
-    const float *signals[] = {
-        &output->gimbal_angle_rad,   &output->gimbal_rate_radps,    &output->gyro_angle_rad,
-        &output->motor_torque_nm,    &output->friction_torque_nm,   &output->unbalance_torque_nm,
-        &output->disturbance_torque_nm, &output->relative_rate_radps, &output->stop_change_age,
-    };
-    for (uint32_t i = 0; i < sizeof signals / sizeof *signals; i++)
-        add(signals[i], 4);
-    uint8_t stop = output->stop < 0 ? 2u : (uint8_t)output->stop;
-    add(&stop, 1);
-    add(&output->faults, 2);
+    uint8_t code = stop < 0 ? 2u : (uint8_t)stop;
+    add(sum, signals, 9u * 4u);
+    add(sum, &code, 1);
+    add(sum, &faults, 2);
+}
+
+static void report(const char *name, uint64_t sum)
+{
+    print("tick ");
+    print(name);
+    print(" 10000 steps ");
+    print_hex(sum);
+    print("\n");
 }
 
 int main(void)
@@ -77,25 +88,29 @@ int main(void)
     print("\n");
 
     gimbal_config_consistent(&config);
-    if (!gimbal_f32_build(&config, &law, message, sizeof message)) {
+    if (!gimbal_f32_build(&config, &law, message, sizeof message)
+        || !gimbal_fixed_build(&config, &fixed_law, message, sizeof message)) {
         print(message);
         return 1;
     }
     gimbal_f32_start(&law, &state);
+    gimbal_fixed_start(&fixed_law, &fixed_state);
     volatile uint32_t *systick = (volatile uint32_t *)0xE000E010u;
     systick[1] = PERIOD_CYCLES - 1u;
     systick[2] = 0u;
     systick[0] = 7u; /* core clock, interrupt, on */
     while (taken < STEPS) {
         if (taken != written) {
-            add_output(&queue[taken % QUEUE]);
+            const struct GimbalOutputF32 *output = &queue[taken % QUEUE];
+            const struct GimbalOutputFixed *fixed = &fixed_queue[taken % QUEUE];
+            add_output(&digest, output, output->stop, output->faults);
+            add_output(&fixed_digest, fixed, fixed->stop, fixed->faults);
             taken = taken + 1u;
         } else {
             __asm volatile("wfi");
         }
     }
-    print("tick f32 10000 steps ");
-    print_hex(digest);
-    print("\n");
+    report("f32", digest);
+    report("fixed", fixed_digest);
     return 0;
 }

@@ -1,7 +1,7 @@
 //! Input for `digest` and `cost`: the same on the host and on every board, made by integer and plain f64 arithmetic.
 
 use core::f64::consts::PI;
-use gimbal_servo::{Config, Digest, Input, Interpolation, Law, Number};
+use gimbal_servo::{Config, Digest, Fixed, Input, Interpolation, Law, Number};
 
 /// One run: a configuration, and the input row of each step.
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +30,8 @@ pub const FLIGHT: Case = Case { name: "flight", config: Config::consistent, row:
 /// A torque that throws the gyro from stop to stop.
 pub const STOPS: Case = Case { name: "stops", config: Config::consistent, row: stops_row, steps: 10_000 };
 
-/// Makes a `main` for the host that prints what the examples of the 1 kHz call must print on a board.
+/// Makes a `main` for the host that prints what the examples of the 1 kHz call must print on a board: those in Rust the
+/// first line, that in C both.
 #[macro_export]
 macro_rules! flight_on_host {
     () => {
@@ -38,6 +39,7 @@ macro_rules! flight_on_host {
         fn main() {
             let flight = $crate::cases::FLIGHT;
             println!("tick f32 {} steps {:016x}", flight.steps, flight.output_digest::<f32>());
+            println!("tick fixed {} steps {:016x}", flight.steps, flight.single_rows_digest());
         }
         #[cfg(target_os = "none")]
         $crate::program!(elsewhere);
@@ -64,6 +66,27 @@ impl Case {
     #[must_use]
     pub fn output_digest<N: Number>(&self) -> u64 {
         self.run::<N>().map_or(0, |(digest, _)| digest.value())
+    }
+
+    /// Digest of the outputs in fixed point alone, for rows that a program has in single precision; 0 if the law cannot be
+    /// built.
+    #[must_use]
+    pub fn single_rows_digest(&self) -> u64 {
+        let config = (self.config)();
+        let (Ok(single), Ok(fixed)) = (config.build::<f32>(), config.build::<Fixed>()) else { return 0 };
+        let (mut state, mut digest) = (fixed.start(), Digest::default());
+        for k in 0..self.steps {
+            let Input { accel_x_mps2, accel_y_mps2, accel_z_mps2, vehicle_rate_radps, .. } = self.input(&single, k);
+            let row = Input {
+                accel_x_mps2: accel_x_mps2.into(),
+                accel_y_mps2: accel_y_mps2.into(),
+                accel_z_mps2: accel_z_mps2.into(),
+                vehicle_rate_radps: vehicle_rate_radps.into(),
+                ..Input::default()
+            };
+            digest.add_output(&fixed.step(&mut state, fixed.units().input(&row)));
+        }
+        digest.value()
     }
 
     /// Steps through the whole case: the digest of the outputs, and velocity and position error at the end.

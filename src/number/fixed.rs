@@ -209,7 +209,8 @@ impl Number for Fixed {
         // The leading one is there already; said once more, the compiler sees that nothing is divided by zero.
         let guess = u32::MAX / (normal >> 16 | 1 << 15);
         let error = (1_i64 << 48) - (u64::from(normal) * u64::from(guess)) as i64;
-        let reciprocal = (i64::from(guess) << 14) + ((i64::from(guess) * (error >> 16)) >> 18);
+        // Both are words: the guess has 17 bits, and so has what is left of its error.
+        let reciprocal = (i64::from(guess) << 14) + (product(guess as i32, (error >> 16) as i32) >> 18);
         Self::saturate((i64::from(self.0) * reciprocal) >> (31 - zeros))
     }
 

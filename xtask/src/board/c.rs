@@ -27,7 +27,7 @@ pub(crate) fn check() -> Result<Note> {
     ensure!(success && flown == expected, "the C program:\n{output}host:\n{expected}");
     ensure!(refused.contains("`servo.motor_lag_s` is -1"), "a wrong field is not named:\n{output}");
     print!("{output}");
-    Ok("header as committed; the C program's outputs equal the host's".into())
+    Ok("header as committed; the C program's outputs equal the host's, f32 and fixed".into())
 }
 
 /// Writes the header.
