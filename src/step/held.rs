@@ -27,7 +27,13 @@ impl<N: Number> Law<N> {
     #[inline(never)]
     pub(super) fn move_held(&self, state: &mut State<N>, acting: Acting<N>) -> Faults {
         if let Regime::Held(side) = state.regime {
-            return self.move_on_stop(state, &acting, side);
+            // One after the other and not one in the other: the deepest calls set the stack.
+            let start = state.held;
+            if self.move_on_stop(state, &acting, side) {
+                return Faults::GYRO_SATURATED;
+            }
+            self.leave_stop(state, &start, side);
+            return Faults::OFFSET_LEFT;
         }
         state.regime = Regime::Free;
         state.held.gimbal_angle = state.offset;
@@ -79,27 +85,27 @@ impl<N: Number> Law<N> {
         state.stop_change_age = stop_change_age;
     }
 
-    fn move_on_stop(&self, state: &mut State<N>, acting: &Acting<N>, side: Side) -> Faults {
+    /// Whether the float is still on its stop at the end of the period.
+    #[inline(never)]
+    fn move_on_stop(&self, state: &mut State<N>, acting: &Acting<N>, side: Side) -> bool {
         let stop = side.mirror(self.stop.angle);
         let quiet_rate = self.stop.gimbal_rate(&state.held, stop, acting.other.half());
         let brake = self.stop.gimbal_rate_gain.at(&[acting.friction_level.half()]);
         let share = self.friction_share(state.relative_rate, acting.end_rate, quiet_rate, brake);
-        let start = state.held;
         state.torque = acting.other + acting.friction_level.times(share);
         self.stop.advance(&mut state.held, stop, state.torque.half());
-        if side.mirror(N::narrow(state.held.gimbal_rate)) >= N::ZERO {
+        let stays = side.mirror(N::narrow(state.held.gimbal_rate)) >= N::ZERO;
+        if stays {
             Self::tell(state, stop, N::ZERO);
-            Faults::GYRO_SATURATED
-        } else {
-            self.leave_stop(state, &start, side, stop);
-            Faults::OFFSET_LEFT
         }
+        stays
     }
 
     /// phi' ended the period pointing away from the stop.
     #[cold]
     #[inline(never)]
-    fn leave_stop(&self, state: &mut State<N>, start: &stop::State<N>, side: Side, stop: N) {
+    fn leave_stop(&self, state: &mut State<N>, start: &stop::State<N>, side: Side) {
+        let stop = side.mirror(self.stop.angle);
         let slope = |held: &stop::State<N>| {
             let motor = self.stop.motor_torque_of(held, stop);
             let net = state.torque.half() - motor.shift_up(self.motor_shift);
