@@ -54,23 +54,25 @@ impl Law {
     #[cold]
     #[inline(never)]
     fn mend<N: Number>(&self, row: &mut Input<N>, input: &Input<N>) -> Faults {
-        let mut faults = Faults::NONE;
-        let mut admit = |value: &mut N, given: N, limit: u32| {
-            if !given.beyond(limit) {
-                *value = given;
-            } else if given.is_number() {
-                faults |= Faults::INPUT_OUT_OF_RANGE;
-                *value = if given > N::ZERO { N::of_limit(limit) } else { -N::of_limit(limit) };
-            } else {
-                faults |= Faults::INPUT_NOT_FINITE;
-            }
-        };
-        admit(&mut row.accel_x_mps2, input.accel_x_mps2, self.radial_accel);
-        admit(&mut row.accel_y_mps2, input.accel_y_mps2, self.radial_accel);
-        admit(&mut row.accel_z_mps2, input.accel_z_mps2, self.axial_accel);
-        admit(&mut row.vehicle_rate_radps, input.vehicle_rate_radps, self.rate);
-        admit(&mut row.torque_nm, input.torque_nm, self.torque);
-        admit(&mut row.spin_rate_radps, input.spin_rate_radps, self.rate);
-        faults
+        admit(&mut row.accel_x_mps2, input.accel_x_mps2, self.radial_accel)
+            | admit(&mut row.accel_y_mps2, input.accel_y_mps2, self.radial_accel)
+            | admit(&mut row.accel_z_mps2, input.accel_z_mps2, self.axial_accel)
+            | admit(&mut row.vehicle_rate_radps, input.vehicle_rate_radps, self.rate)
+            | admit(&mut row.torque_nm, input.torque_nm, self.torque)
+            | admit(&mut row.spin_rate_radps, input.spin_rate_radps, self.rate)
+    }
+}
+
+/// One value; in one place, for the sake of the program's size.
+#[inline(never)]
+fn admit<N: Number>(value: &mut N, given: N, limit: u32) -> Faults {
+    if !given.beyond(limit) {
+        *value = given;
+        Faults::NONE
+    } else if given.is_number() {
+        *value = if given > N::ZERO { N::of_limit(limit) } else { -N::of_limit(limit) };
+        Faults::INPUT_OUT_OF_RANGE
+    } else {
+        Faults::INPUT_NOT_FINITE
     }
 }

@@ -98,6 +98,8 @@ impl<N: Number> Law<N> {
 impl<N: Number> LagTail<N> {
     /// `(r / p)` times the integral of `e^(p (h - t)) e'(t)` over the last `h = rest` of the period, with
     /// `e'(t) = first + bend t / h`.
+    // Not inlined, for the sake of the program's size.
+    #[inline(never)]
     fn response(&self, first: N, bend: N, rest: N) -> N {
         let curved = self.exponent.at(&[first.times(rest)]) + bend;
         let sum = first + curved.times(self.curve.at(rest)).shift_up(CURVE_SHIFT);
