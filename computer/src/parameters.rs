@@ -4,15 +4,14 @@
 
 mod reader;
 
-use gimbal_servo::bearing::ViscousLaw;
-use gimbal_servo::{Config, Digest, Interpolation, Range, bearing, estimator, gyro, servo, unbalance};
+use gimbal_servo::{Config, Digest, estimator};
 
 pub use reader::model;
 
 /// Number of parameters.
 pub const COUNT: usize = 60;
 /// Of which the first belong to the axis.
-const AXIS_COUNT: usize = 39;
+const AXIS_COUNT: usize = Config::VALUES;
 
 /// Parameters of the axis, then of the estimator.
 pub type Values = [f64; COUNT];
@@ -95,88 +94,11 @@ pub fn digest(values: &Values) -> u64 {
 #[must_use]
 pub fn values(axis: &Config, estimator: &estimator::Config) -> Values {
     let mut values = [0.0; COUNT];
-    let all = axis_values(axis).into_iter().chain(estimator_values(estimator));
+    let all = axis.values().into_iter().chain(estimator_values(estimator));
     for (place, value) in values.iter_mut().zip(all) {
         *place = value;
     }
     values
-}
-
-fn axis_values(axis: &Config) -> [f64; AXIS_COUNT] {
-    let Config { servo, gyro, bearing, unbalance, range, period_s, interpolation } = *axis;
-    let servo::Config {
-        gimbal_inertia_kg_m2,
-        gain_nm_per_rad_s,
-        lead_time_constants_s: [t1, t2, t3, t4, t5],
-        lag_time_constants_s: [t6, t7, t8, t9],
-        motor_lag_s,
-    } = servo;
-    let gyro::Config {
-        float_inertia_kg_m2,
-        damping_nm_s_per_rad,
-        angular_momentum_nm_s,
-        stop_angle_rad,
-        cross_coupling,
-    } = gyro;
-    let bearing::Config {
-        count,
-        preload_n,
-        gimbal_weight_n,
-        pitch_diameter_m,
-        load_torque_nm_per_n,
-        load_exponent,
-        static_axial_factor,
-        static_radial_factor,
-        torque_axial_factor,
-        torque_radial_factor,
-        lubrication_factor,
-        viscosity_m2ps,
-        viscous_law,
-        slip_rate_radps,
-    } = bearing;
-    let unbalance::Config { x_kg_m, y_kg_m } = unbalance;
-    let Range { radial_accel_mps2, axial_accel_mps2, rate_radps, torque_nm } = range;
-    [
-        gimbal_inertia_kg_m2,
-        gain_nm_per_rad_s,
-        t1,
-        t2,
-        t3,
-        t4,
-        t5,
-        t6,
-        t7,
-        t8,
-        t9,
-        motor_lag_s,
-        float_inertia_kg_m2,
-        damping_nm_s_per_rad,
-        angular_momentum_nm_s,
-        stop_angle_rad,
-        flag(cross_coupling),
-        f64::from(count),
-        preload_n,
-        gimbal_weight_n,
-        pitch_diameter_m,
-        load_torque_nm_per_n,
-        load_exponent,
-        static_axial_factor,
-        static_radial_factor,
-        torque_axial_factor,
-        torque_radial_factor,
-        lubrication_factor,
-        viscosity_m2ps,
-        flag(viscous_law == ViscousLaw::Metric),
-        slip_rate_radps,
-        x_kg_m,
-        y_kg_m,
-        radial_accel_mps2,
-        axial_accel_mps2,
-        rate_radps,
-        torque_nm,
-        period_s,
-        flag(interpolation == Interpolation::Held),
-    ]
 }
 
 fn estimator_values(estimator: &estimator::Config) -> [f64; COUNT - AXIS_COUNT] {
