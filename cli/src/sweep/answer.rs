@@ -21,7 +21,7 @@ pub(super) struct Spread {
 
 /// The result of a sweep.
 pub(super) struct Answer {
-    /// In the order of [`METRICS`].
+    /// In the order of `METRICS`.
     pub(super) spreads: Vec<Spread>,
     runs: u64,
     pub(super) unbuilt: u64,
