@@ -16,6 +16,7 @@ pub mod counter;
 #[cfg(target_os = "none")]
 #[doc(hidden)]
 pub mod entry;
+pub mod estimates;
 #[cfg(target_os = "none")]
 pub mod log;
 pub mod minute;

@@ -6,7 +6,7 @@ use host_tests::Row;
 use host_tests::axis::System;
 use host_tests::estimate::{Flight, Noise, estimate};
 use host_tests::estimate_faults::faults;
-use host_tests::estimate_figures::{self, Saturations, cases, free_score, saturations, wrong_score};
+use host_tests::estimate_figures::{self, Saturations, Wrong, cases, free_score, saturations, wrong_score};
 use host_tests::inputs;
 
 /// The static ratio leaves 2 to 4 %.
@@ -28,7 +28,7 @@ fn cross_attitude_within_one_percent_and_velocity_within_two_without_saturation(
 fn cross_wrong_parameters_cost_their_ratio_and_two_percent() {
     let case = &cases(1)[2];
     for seed in 0..5 {
-        let Some((score, ratio, false)) = wrong_score(case, seed) else { continue };
+        let Some(Wrong { score, ratio, saturates: false, .. }) = wrong_score(case, seed) else { continue };
         assert!(score.attitude <= ratio + 0.02, "seed {seed}: {} beside {ratio}", score.attitude);
         assert!(score.velocity <= ratio + 0.02, "seed {seed}: {} beside {ratio}", score.velocity);
     }

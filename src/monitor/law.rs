@@ -20,6 +20,8 @@ const ALLOWANCE: f64 = 1.25;
 /// Full scales of m and of g.
 const M_SCALE: i32 = 4;
 const G_SCALE: i32 = 10;
+/// Blocks in a row within the clamp's zone from which the bearing creeps instead of passing through.
+const CREEP: u32 = 3;
 /// Rows after a saturation in which theta and its model may differ for the offset's sake.
 const PAUSE: u32 = 1_000;
 
@@ -106,8 +108,10 @@ pub struct State<N: Number> {
     score: N,
     /// Friction level of the last reversal, and rows since.
     level: N,
-    /// Whether there was one within this block.
+    /// Whether there was one within this block; blocks in a row with one; whether they were [`CREEP`] and are still felt.
     reversed: bool,
+    dwell: u32,
+    crept: bool,
     saturated: bool,
     since_reversal: u32,
     since_saturation: u32,
@@ -146,9 +150,8 @@ impl Config {
         let rows_an_hour = 3600.0 / (f64::from(BLOCK) * axis.period_s);
         let root = lundberg();
         let threshold = libm::log(rows_an_hour / self.false_alarms_per_hour) / root;
-        // The clamp turns the rate's noise into torque; neighbouring rows of theta then go together, and a block has
-        // fewer degrees of freedom than rows: three times the deviation.
-        let zone = 3.0 * gain * self.rate_noise_radps / axis.bearing.slip_rate_radps;
+        // The clamp turns the rate's noise into torque; this is what theta would have if the bearing stayed there.
+        let zone = gain * self.rate_noise_radps / axis.bearing.slip_rate_radps;
         Ok(Law {
             measured_shift: (gyro_exponent - exponent).max(0).unsigned_abs(),
             modelled_shift: (units.gyro_angle - exponent).max(0).unsigned_abs(),
@@ -222,12 +225,19 @@ impl<N: Number> Law<N> {
         let rows_since = |since: u32, now: bool| if now { 0 } else { since.saturating_add(BLOCK) };
         state.since_reversal = rows_since(state.since_reversal, state.reversed);
         state.since_saturation = rows_since(state.since_saturation, state.saturated);
+        state.dwell = if state.reversed { state.dwell.saturating_add(1) } else { 0 };
+        state.crept |= state.dwell >= CREEP;
         (state.reversed, state.saturated) = (false, false);
         let mut variance = self.noise;
         state.regime = Regime::Slip;
+        state.crept &= state.since_reversal < self.felt;
         if state.since_reversal < self.felt {
             state.regime = Regime::Reversal;
-            let deviation = self.zone.at(&[state.level]);
+            // A passage is over before the noise has made all of this. Where the bearing creeps it has, and neighbouring
+            // rows of theta then go together, so that a block has few degrees of freedom: four times the deviation.
+            let passing = self.zone.at(&[state.level]);
+            let twice = passing + passing;
+            let deviation = if state.crept { twice + twice } else { passing };
             variance = variance + deviation.times(deviation).shift_down(M_SHIFT);
         }
         let share = self.share.at(&[state.peak]);

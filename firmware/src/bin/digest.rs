@@ -2,9 +2,10 @@
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
-use gimbal_firmware::cases::CASES;
+use gimbal_firmware::cases::{CASES, Case, FLIGHT, STOPS};
 #[cfg(target_os = "none")]
 use gimbal_firmware::semihosting::println;
+use gimbal_firmware::{board, estimates};
 use gimbal_servo::Fixed;
 
 #[cfg(target_os = "none")]
@@ -16,14 +17,39 @@ fn main() -> Result<(), &'static str> {
     run()
 }
 
+/// What it takes to build an estimator beside an axis, and three of both.
+const ESTIMATOR_RAM_BYTES: u32 = 32 * 1024;
+const PLATFORM_RAM_BYTES: u32 = 128 * 1024;
+
 fn run() -> Result<(), &'static str> {
     for case in CASES {
-        for (number, digest) in [("f32", case.digest::<f32>()), ("fixed", case.digest::<Fixed>())] {
-            if digest == 0 {
-                return Err("a case's law cannot be built");
-            }
-            println!("digest {} {number} {} steps {digest:016x}", case.name, case.steps);
+        told(case.name, case.steps, [case.digest::<f32>(), case.digest::<Fixed>()])?;
+    }
+    if has(ESTIMATOR_RAM_BYTES) {
+        let flight = Case { name: "estimator-flight", steps: 3_000, ..FLIGHT };
+        let stops = Case { name: "estimator-stops", steps: 3_000, ..STOPS };
+        for case in [flight, stops] {
+            told(case.name, case.steps, [estimates::digest::<f32>(&case), estimates::digest::<Fixed>(&case)])?;
         }
+    }
+    if has(PLATFORM_RAM_BYTES) {
+        let digests = [estimates::platform_digest::<f32>(), estimates::platform_digest::<Fixed>()];
+        told("platform", estimates::PLATFORM_STEPS, digests)?;
+    }
+    Ok(())
+}
+
+/// Whether there is so much memory; a host has it.
+fn has(bytes: u32) -> bool {
+    cfg!(not(target_os = "none")) || board::RAM_BYTES >= bytes
+}
+
+fn told(name: &str, steps: u32, [float, fixed]: [u64; 2]) -> Result<(), &'static str> {
+    for (number, digest) in [("f32", float), ("fixed", fixed)] {
+        if digest == 0 {
+            return Err("a case's law cannot be built");
+        }
+        println!("digest {name} {number} {steps} steps {digest:016x}");
     }
     Ok(())
 }
