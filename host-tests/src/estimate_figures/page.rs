@@ -140,8 +140,8 @@ fn monitor_page(text: &mut String, hours: u32) {
     }
     text.push_str(
         "\nThe ten effects are the first of each of the six blocks of the list of effects, then the second of each, until there are ten.\n\
-         What shows at the bearing's reversals alone is the hardest to flag: there the rate's noise becomes torque, and the test grants theta three\n\
-         times the deviation that it makes.\n\nWith 6 % granted, which no drift of 3 % alarms, the smallest effect that is flagged within 5 s:\n\n\
+         Those that act at the bearing's reversals alone are seen there: a passage of the clamp's zone is granted what the rate's noise makes, a\n\
+         bearing that creeps four times that. One of the watched flights in four turns down to a thousand times slower, so that its bearing creeps.\n\nWith 6 % granted, at which 1 of 60 flights drifting by up to 3 % alarms, the smallest effect that is flagged within 5 s:\n\n\
          | effect | theta changes by, rms | times its typical size |\n|---|---|---|\n",
     );
     for name in EFFECTS {
