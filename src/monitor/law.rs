@@ -102,6 +102,7 @@ stored!([N: Number] Law<N> {
 
 /// The test's memory.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[allow(clippy::struct_excessive_bools, reason = "each holds over a span of its own")]
 pub struct State<N: Number> {
     sum: N,
     rows: u32,
