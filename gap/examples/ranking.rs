@@ -33,7 +33,9 @@ fn main() {
         };
         (as_log(&corpus::simulate(&case)), ModelFile::default())
     };
-    let record = Record::new(&log, &model.config);
+    let mut record = Record::new(&log, &model.config);
+    record.quieten(&model.config);
+    println!("rate noise {:.2e} filtered {}", record.rate_noise.rms_radps, record.rate_noise.pass.len() > 1);
     let mut problem = Problem::new(&record, &model);
     let search = search(&mut problem);
     let count = problem.whitener.count() as f64;

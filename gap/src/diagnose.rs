@@ -49,16 +49,16 @@ impl Diagnosis {
 /// Diagnoses one log against a model.
 #[must_use]
 pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
-    let record = Record::new(log, &model.config);
+    let mut record = Record::new(log, &model.config);
     if !record.faults.is_empty() {
         return refused(record);
     }
     let faults = faults(&record, model);
     if !faults.is_empty() {
-        let mut record = record;
         record.faults = faults;
         return refused(record);
     }
+    record.quieten(&model.config);
     let mut problem = Problem::new(&record, model);
     let mut search = search(&mut problem);
     // a fit below the noise says that the noise was taken too high: what the effect did was in it
@@ -101,7 +101,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let removes: Vec<f64> =
         contributions.iter().map(|c| (power(c) / all * gone.clamp(0.0, 1.0)).clamp(0.0, 1.0)).collect();
     let blocks = if fit.set.0.is_empty() {
-        if decision.verdict == Verdict::NoGap { Vec::new() } else { block_shares(&problem) }
+        if decision.verdict == Verdict::NoGap { Vec::new() } else { block_shares(&problem, &fit.residual) }
     } else {
         let mut shares: Vec<(String, f64)> = Vec::new();
         for (place, &index) in fit.set.0.iter().enumerate() {

@@ -1,12 +1,14 @@
-//! Fitting: whitened residuals, sensitivities, normal equations by time block, and the search over effects.
+//! Fitting: whitened residuals, sensitivities, normal equations, and the search over effects.
 
 mod normal;
 mod problem;
 mod refine;
+mod rest;
 mod search;
 mod whiten;
 
-pub use normal::{Normal, Solution};
+pub use normal::Solution;
+pub(crate) use normal::{products, slices, solve};
 pub use problem::{BLOCKS, Columns, Problem};
 pub(crate) use problem::{predicted, residual as raw_residual};
 pub use refine::{Fit, refine, refit, without};

@@ -1,24 +1,13 @@
-//! Normal equations by time block, and the Bayesian linear fits made from them.
+//! Normal equations, and the Bayesian linear fits made from them.
 //!
 //! ```text
 //! evidence = b' (G + P)^-1 b / 2 - log |G + P| / 2 + log |P| / 2        P the precision of the priors
 //! ```
 
+use std::ops::Range;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
-
-/// Gram matrix of the columns and their products with the residual, by block.
-#[derive(Debug, Clone)]
-pub struct Normal {
-    /// Gram matrix over all blocks.
-    pub gram: DMatrix<f64>,
-    /// Products with the residual.
-    pub drive: DVector<f64>,
-    /// Square of the residual.
-    pub square: f64,
-    /// The same three block by block.
-    pub blocks: Vec<(DMatrix<f64>, DVector<f64>, f64)>,
-}
 
 /// A linear fit.
 #[derive(Debug, Clone)]
@@ -33,81 +22,32 @@ pub struct Solution {
     pub evidence: f64,
 }
 
-impl Normal {
-    /// From whitened columns and a whitened residual.
-    #[must_use]
-    pub fn new(columns: &[Vec<f64>], residual: &[f64], blocks: usize) -> Self {
-        let rows = residual.len();
-        let parts: Vec<_> = (0..blocks)
-            .into_par_iter()
-            .map(|block| {
-                let (from, to) = (block * rows / blocks, (block + 1) * rows / blocks);
-                // in pieces that stay in the cache
-                let count = columns.len() + 1;
-                let mut product = DMatrix::zeros(count, count);
-                let mut start = from;
-                while start < to {
-                    let end = (start + 2048).min(to);
-                    let tall = DMatrix::from_fn(end - start, count, |row, column| {
-                        if column == 0 { residual[start + row] } else { columns[column - 1][start + row] }
-                    });
-                    product.gemm(1.0, &tall.transpose(), &tall, 1.0);
-                    start = end;
-                }
-                let gram = product.view((1, 1), (count - 1, count - 1)).into_owned();
-                let drive = DVector::from_fn(count - 1, |row, _| product[(row + 1, 0)]);
-                (gram, drive, product[(0, 0)])
-            })
-            .collect();
-        let mut normal = Self {
-            gram: DMatrix::zeros(columns.len(), columns.len()),
-            drive: DVector::zeros(columns.len()),
-            square: 0.0,
-            blocks: parts,
-        };
-        for (gram, drive, square) in &normal.blocks {
-            normal.gram += gram;
-            normal.drive += drive;
-            normal.square += square;
-        }
-        normal
-    }
+/// Rows of a piece that stays in the cache.
+const PIECE: usize = 1024;
 
-    /// Fits the columns chosen, each with the precision of its prior (mean zero).
-    #[must_use]
-    pub fn solve(&self, chosen: &[usize], precision: &[f64]) -> Option<Solution> {
-        solve(&self.gram, &self.drive, chosen, precision)
-    }
+/// Products of columns with others, over some rows: `a' b`.
+pub(crate) fn products(a: &[&[f64]], b: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
+    let pieces: Vec<usize> = rows.clone().step_by(PIECE).collect();
+    let zero = || DMatrix::zeros(a.len(), b.len());
+    let of = |mut sum: DMatrix<f64>, &start: &usize| {
+        let end = (start + PIECE).min(rows.end);
+        let wide = DMatrix::from_row_iterator(a.len(), end - start, samples(a, start..end));
+        let tall = DMatrix::from_iterator(end - start, b.len(), samples(b, start..end));
+        sum.gemm(1.0, &wide, &tall, 1.0);
+        sum
+    };
+    // in an order of its own whatever the number of threads
+    let parts: Vec<DMatrix<f64>> = pieces.par_chunks(16).map(|pieces| pieces.iter().fold(zero(), of)).collect();
+    parts.into_iter().fold(zero(), |sum, part| sum + part)
+}
 
-    /// The same on all blocks but those in `out`.
-    #[must_use]
-    pub fn solve_without(&self, out: &[usize], chosen: &[usize], precision: &[f64]) -> Option<Solution> {
-        let (mut gram, mut drive) = (self.gram.clone(), self.drive.clone());
-        for &block in out {
-            gram -= &self.blocks[block].0;
-            drive -= &self.blocks[block].1;
-        }
-        solve(&gram, &drive, chosen, precision)
-    }
+fn samples(columns: &[&[f64]], rows: Range<usize>) -> impl Iterator<Item = f64> {
+    columns.iter().flat_map(move |column| column[rows.clone()].iter().copied())
+}
 
-    /// Square of the residual in some blocks with coefficients applied.
-    #[must_use]
-    pub fn square_in(&self, blocks: &[usize], chosen: &[usize], coefficients: &DVector<f64>) -> f64 {
-        blocks
-            .iter()
-            .map(|&block| {
-                let (gram, drive, square) = &self.blocks[block];
-                let mut value = *square;
-                for (i, &a) in chosen.iter().enumerate() {
-                    value -= 2.0 * coefficients[i] * drive[a];
-                    for (j, &b) in chosen.iter().enumerate() {
-                        value += coefficients[i] * coefficients[j] * gram[(a, b)];
-                    }
-                }
-                value
-            })
-            .sum()
-    }
+/// Slices of columns.
+pub(crate) fn slices(columns: &[Vec<f64>]) -> Vec<&[f64]> {
+    columns.iter().map(Vec::as_slice).collect()
 }
 
 /// Fits chosen columns of normal equations.

@@ -1,19 +1,23 @@
 //! One log against one model: base prediction, sensitivities to everything, noise.
 
 use gimbal_model_file::ModelFile;
-use nalgebra::DVector;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
+use super::Whitener;
+use super::normal::{products, slices};
+use super::rest::{Raw, rest};
 use super::whiten::Loop;
-use super::{Normal, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, apply, candidates, nuisances};
-use crate::record::{Record, Signal};
+use crate::record::{Record, Signal, rough};
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
 /// Time blocks.
 pub const BLOCKS: usize = 10;
 /// Places of the beginning that are unknown, and their standard deviations.
 const STATE_SIGMA: [f64; 10] = [0.02, 2e-4, 0.1, 0.3, 0.3, 0.3, 0.3, 1e-2, 1e-2, 1.0];
+/// Steps in which sensitivities to the beginning are taken, over those: inside the friction's clamp, off the stops.
+pub(crate) const STATE_STEP: f64 = 1e-3;
 
 /// Which column is what.
 #[derive(Debug, Clone)]
@@ -24,6 +28,13 @@ pub struct Columns {
     pub nuisances: usize,
     /// First column of each candidate's probes.
     pub first: Vec<usize>,
+}
+
+impl Columns {
+    /// Columns of a candidate, of `all` columns.
+    pub(crate) fn probes(&self, candidate: usize, all: usize) -> std::ops::Range<usize> {
+        self.first[candidate]..self.first.get(candidate + 1).copied().unwrap_or(all)
+    }
 }
 
 /// Everything that fits are made from.
@@ -45,10 +56,8 @@ pub struct Problem<'a> {
     pub columns: Columns,
     /// Whitened sensitivities.
     pub whitened: Vec<Vec<f64>>,
-    /// Measured less nominal, whitened.
-    pub residual: Vec<f64>,
-    /// Their normal equations.
-    pub normal: Normal,
+    /// Their Gram matrix.
+    pub gram: DMatrix<f64>,
     /// Noise.
     pub whitener: Whitener,
     /// Rms of the noise of each channel.
@@ -101,9 +110,9 @@ impl<'a> Problem<'a> {
         let mut target = vec![raw];
         scale(&mut target, &scaled);
         let target = target.swap_remove(0);
-        // what everything together does not explain
+        // what the nominal parameters and a few effects do not explain
         let rest = match rest_known {
-            None => rest(&raw_columns, &target, &valid, &sigma),
+            None => rest(&Raw { columns: &raw_columns, layout: &columns, sigma: &sigma, valid: &valid }, &target),
             Some(known) => {
                 let mut known = vec![known.clone()];
                 scale(&mut known, &scaled);
@@ -126,27 +135,13 @@ impl<'a> Problem<'a> {
         let (turning, share) = turning(&base, record, &nominal);
         let period_s = record.inputs.period_s;
         let turning_noise = turning_noise(&base, record, &nominal) * share.sqrt();
-        let whitener =
-            Whitener::new(&rest, &valid, Loop { impulse: &impulse, turning: &turning, turning_noise, period_s });
+        let rate_noise = &record.rate_noise;
+        let behind = Loop { impulse: &impulse, turning: &turning, turning_noise, rate_noise, period_s };
+        let whitener = Whitener::new(&rest, &valid, behind);
         let whitened: Vec<Vec<f64>> = raw_columns.into_par_iter().map(|column| whitener.apply(&column)).collect();
-        let residual = whitener.apply(&target);
-        let normal = Normal::new(&whitened, &residual, BLOCKS);
+        let gram = products(&slices(&whitened), &slices(&whitened), 0..whitener.rows());
         let stop_rad = model.config.gyro.stop_angle_rad;
-        Self {
-            record,
-            stop_rad,
-            base,
-            begin,
-            nuisances,
-            candidates,
-            columns,
-            whitened,
-            residual,
-            normal,
-            whitener,
-            noise,
-            sigma,
-        }
+        Self { record, stop_rad, base, begin, nuisances, candidates, columns, whitened, gram, whitener, noise, sigma }
     }
 
     /// Whitened residual of a prediction.
@@ -164,18 +159,10 @@ impl<'a> Problem<'a> {
         for (old, new) in self.whitened.iter_mut().zip(columns) {
             *old = new;
         }
-        let all = self.whitened.len();
-        let whitened = &self.whitened;
-        let row = |own: usize| -> Vec<f64> {
-            (0..all).into_par_iter().map(|other| dot(&whitened[own], &whitened[other])).collect()
-        };
-        for own in 0..fixed {
-            for (other, product) in row(own).into_iter().enumerate() {
-                self.normal.gram[(own, other)] = product;
-                self.normal.gram[(other, own)] = product;
-            }
-            self.normal.drive[own] = dot(&self.whitened[own], &self.residual);
-        }
+        let whitened = slices(&self.whitened);
+        let fresh = products(&whitened[..fixed], &whitened, 0..self.whitener.rows());
+        self.gram.rows_mut(0, fixed).copy_from(&fresh);
+        self.gram.columns_mut(0, fixed).copy_from(&fresh.transpose());
     }
 
     /// Columns and prior precisions of a set of candidates.
@@ -242,18 +229,13 @@ impl Draft<'_> {
     }
 
     fn begin_column(&self, state: usize) -> Signals {
-        let step = 0.05 * STATE_SIGMA[state];
+        let step = STATE_STEP * STATE_SIGMA[state];
         let mut begin = self.begin.clone();
         begin.state[state] += step;
         // it dies away
-        let rows = if state == 9 { usize::MAX } else { self.rows_of(25.0) };
+        let rows = if state == 9 { usize::MAX } else { remembered_rows(self.record) };
         let moved = predict(self.base, &self.record.inputs, &begin, rows);
         difference(self.record, &moved, self.nominal, step)
-    }
-
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-    fn rows_of(&self, seconds: f64) -> usize {
-        (seconds / self.record.inputs.period_s) as usize
     }
 
     fn difference(&self, physics: &Physics, step: f64) -> Signals {
@@ -272,6 +254,12 @@ impl Draft<'_> {
             })
             .collect()
     }
+}
+
+/// Rows for which a prediction remembers where it began.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+pub(crate) fn remembered_rows(record: &Record) -> usize {
+    (MEMORY_S / record.inputs.period_s) as usize
 }
 
 /// The predicted samples of a channel.
@@ -357,8 +345,7 @@ fn turning(base: &Physics, record: &Record, nominal: &Prediction) -> (Vec<bool>,
 
 /// Torque that the noise of the logged rate makes on the slope of the friction law, over that of the impulse.
 fn turning_noise(base: &Physics, record: &Record, nominal: &Prediction) -> f64 {
-    let always = vec![true; record.rows()];
-    let rate = rough(&record.inputs.rate_radps, &always);
+    let rate = record.rate_noise.rms_radps;
     let level = peak(&nominal.friction_nm);
     let impulse_nm = base.config.servo.gimbal_inertia_kg_m2 * IMPULSE_RADPS / record.inputs.period_s;
     rate * level / base.config.bearing.slip_rate_radps / impulse_nm
@@ -366,47 +353,10 @@ fn turning_noise(base: &Physics, record: &Record, nominal: &Prediction) -> f64 {
 
 /// Rate after the impulse [rad/s].
 const IMPULSE_RADPS: f64 = 1e-3;
+/// Time for which the platform remembers where it began [s].
+const MEMORY_S: f64 = 25.0;
 /// Rows for which the loop remembers a disturbance.
 const AFTER_TURNING: usize = 400;
-
-/// Rms of white noise from third differences, whatever else there is.
-fn rough(values: &[f64], valid: &[bool]) -> f64 {
-    let mut steps: Vec<f64> = (3..values.len())
-        .filter(|&k| valid[k - 3..=k].iter().all(|valid| *valid))
-        .map(|k| (values[k] - 3.0 * values[k - 1] + 3.0 * values[k - 2] - values[k - 3]).abs())
-        .collect();
-    if steps.is_empty() {
-        return 1.0;
-    }
-    let middle = steps.len() / 2;
-    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    (*median / 0.6745 / 20.0_f64.sqrt()).max(1e-12)
-}
-
-/// The residual of a fit of all columns, on a part of the rows.
-fn rest(columns: &[Signals], target: &Signals, valid: &[bool], sigma: &[f64]) -> Signals {
-    let picks: Vec<usize> = (0..valid.len()).step_by(6).filter(|&k| valid[k]).collect();
-    let thin = |signals: &Signals| -> Vec<f64> {
-        signals.iter().flat_map(|signal| picks.iter().map(|&k| signal[k])).collect()
-    };
-    let thinned: Vec<Vec<f64>> = columns.par_iter().map(thin).collect();
-    let normal = Normal::new(&thinned, &thin(target), 4);
-    let chosen: Vec<usize> = (0..columns.len()).collect();
-    let precision: Vec<f64> = sigma.iter().map(|sigma| 1.0 / (sigma * sigma)).collect();
-    let coefficients = normal
-        .solve(&chosen, &precision)
-        .map_or_else(|| DVector::zeros(columns.len()), |solution| solution.coefficients);
-    let channel = |index: usize| -> Vec<f64> {
-        let mut rest = target[index].clone();
-        for (column, coefficient) in columns.iter().zip(&coefficients) {
-            for (rest, value) in rest.iter_mut().zip(&column[index]) {
-                *rest -= coefficient * value;
-            }
-        }
-        rest
-    };
-    (0..target.len()).into_par_iter().map(channel).collect()
-}
 
 /// Largest value that is held for a few rows.
 fn high(values: &[f64]) -> f64 {
@@ -416,10 +366,6 @@ fn high(values: &[f64]) -> f64 {
             few.iter().fold(f64::MAX, |least, value| if value.is_finite() { least.min(value.abs()) } else { 0.0 })
         })
         .fold(0.0, f64::max)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn peak(values: &[f64]) -> f64 {

@@ -7,8 +7,8 @@ use gimbal_plant::{Bound, Effect};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::normal::solve;
-use super::problem::{difference, residual};
+use super::normal::{products, slices, solve};
+use super::problem::{STATE_STEP, difference, remembered_rows, residual};
 use super::{Problem, Set};
 use crate::library::apply;
 use crate::simulate::{Begin, Physics, Prediction, predict};
@@ -20,6 +20,8 @@ const QUICK_ITERATIONS: usize = 5;
 const REFRESHES: usize = 2;
 /// Share of the excess that is put down to the equations being linearised, as noise, while a fit is under way.
 const LINEARISED: f64 = 0.002;
+/// Step of a sensitivity to a value, in its logarithm or over its size.
+const STEP: f64 = 2e-3;
 /// Standard deviation of the logarithm of a parameter that is not a size.
 const SHAPE_SIGMA: f64 = 1.2;
 
@@ -91,7 +93,8 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
         let cost = power / temper + priors(&values, &shifts, &state);
         let columns: Vec<Vec<f64>> =
             free.iter().map(|free| sensitivity(problem, set, &values, &shifts, &state, free, &now.0)).collect();
-        let (mut gram, mut drive, mut weights) = base.joined(&columns, &now.1);
+        let (mut gram, mut drive) = base.joined(&columns, &now.1);
+        let mut weights = Vec::new();
         gram /= temper;
         drive /= temper;
         for (place, value) in state.iter().enumerate() {
@@ -179,10 +182,11 @@ fn step(
         let Some(found) = solve(equations.gram, &drive, &chosen, &weights) else { break };
         let next: Vec<f64> =
             shifts.iter().enumerate().map(|(place, shift)| shift + found.coefficients[state + place]).collect();
-        let mut same =
-            next.iter().zip(&ahead).zip(&problem.nuisances).all(|((next, ahead), nuisance)| {
-                ahead.abs() > nuisance.tolerance() || next.abs() <= nuisance.tolerance()
-            });
+        let mut same = next
+            .iter()
+            .zip(&ahead)
+            .zip(&problem.nuisances)
+            .all(|((next, ahead), nuisance)| ahead.abs() > nuisance.tolerance || next.abs() <= nuisance.tolerance);
         for (place, next) in next.iter().enumerate() {
             if held[place].is_none() && next.abs() > limits[place] {
                 held[place] = Some(limits[place].copysign(*next));
@@ -192,7 +196,7 @@ fn step(
         solution = Some(found);
         // a wall that was met stays for this step
         for ((ahead, next), nuisance) in ahead.iter_mut().zip(next).zip(&problem.nuisances) {
-            if ahead.abs() <= nuisance.tolerance() {
+            if ahead.abs() <= nuisance.tolerance {
                 *ahead = next;
             }
         }
@@ -227,8 +231,8 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
     let rows = fit.residual.len();
     // the beginning is the log's own and stays
     let begin = problem.columns.begin;
-    let mut columns: Vec<&Vec<f64>> = problem.whitened[begin..fixed].iter().collect();
-    columns.extend(&fit.sensitivities);
+    let mut columns = slices(&problem.whitened[begin..fixed]);
+    columns.extend(slices(&fit.sensitivities));
     let free = free(problem, &fit.set, &fit.values);
     let pull = Pull::new(problem, &precision, &fit.shifts);
     let mut weights = pull.curvature;
@@ -237,16 +241,8 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
     let (mut gram, mut drive) = (DMatrix::zeros(n, n), DVector::zeros(n));
     for block in (0..super::BLOCKS).filter(|block| !out.contains(block)) {
         let range = block * rows / super::BLOCKS..(block + 1) * rows / super::BLOCKS;
-        for i in 0..n {
-            drive[i] += dot(&columns[i][range.clone()], &fit.residual[range.clone()]);
-            for j in 0..=i {
-                let product = dot(&columns[i][range.clone()], &columns[j][range.clone()]);
-                gram[(i, j)] += product;
-                if i != j {
-                    gram[(j, i)] += product;
-                }
-            }
-        }
+        gram += products(&columns, &columns, range.clone());
+        drive += products(&columns, &[&fit.residual], range).column(0);
     }
     let excess = fit.square - problem.whitener.count() as f64;
     let temper = (LINEARISED * excess).max(1.0);
@@ -403,10 +399,10 @@ fn sensitivity(
     let mut moved = values.to_vec();
     let value = &mut moved[free.effect][free.value];
     let step = if free.log {
-        *value *= 0.03_f64.exp();
-        0.03
+        *value *= STEP.exp();
+        STEP
     } else {
-        let step = (0.02 * value.abs()).max(0.02 * free.sigma);
+        let step = STEP * value.abs().max(free.sigma);
         *value += step;
         step
     };
@@ -509,10 +505,6 @@ fn square(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 /// Sensitivities to the beginning and to the nominal parameters, and their Gram matrix.
 struct Linear<'a> {
     columns: Cow<'a, [Vec<f64>]>,
@@ -523,7 +515,7 @@ impl<'a> Linear<'a> {
     /// Those of the nominal platform.
     fn of(problem: &'a Problem) -> Self {
         let fixed = problem.columns.begin + problem.columns.nuisances;
-        let gram = problem.normal.gram.view((0, 0), (fixed, fixed)).into_owned();
+        let gram = problem.gram.view((0, 0), (fixed, fixed)).into_owned();
         Self { columns: Cow::Borrowed(&problem.whitened[..fixed]), gram }
     }
 
@@ -541,7 +533,7 @@ impl<'a> Linear<'a> {
         let column = |place: usize| {
             let (mut shifts, mut state) = (shifts.to_vec(), state.to_vec());
             let step = if place < state.len() {
-                let step = 0.05 * problem.sigma[place];
+                let step = STATE_STEP * problem.sigma[place];
                 state[place] += step;
                 step
             } else {
@@ -549,37 +541,30 @@ impl<'a> Linear<'a> {
                 shifts[place - state.len()] += step;
                 step
             };
-            let moved = predict(&physics(problem, set, values, &shifts), inputs, &begin(problem, &state), usize::MAX);
+            // what changes at the beginning alone dies away
+            let rows = if place < 9 { remembered_rows(problem.record) } else { usize::MAX };
+            let moved = predict(&physics(problem, set, values, &shifts), inputs, &begin(problem, &state), rows);
             problem.whiten(difference(problem.record, &moved, now, step))
         };
         let columns: Vec<Vec<f64>> = (0..fixed).into_par_iter().map(column).collect();
-        let mut gram = DMatrix::zeros(fixed, fixed);
-        for own in 0..fixed {
-            for other in 0..=own {
-                let product = dot(&columns[own], &columns[other]);
-                gram[(own, other)] = product;
-                gram[(other, own)] = product;
-            }
-        }
+        let gram = products(&slices(&columns), &slices(&columns), 0..problem.whitener.rows());
         Self { columns: Cow::Owned(columns), gram }
     }
 
     /// Normal equations of these columns and others.
-    fn joined(&self, others: &[Vec<f64>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>, Vec<f64>) {
+    fn joined(&self, others: &[Vec<f64>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let fixed = self.columns.len();
-        let n = fixed + others.len();
-        let mut gram = DMatrix::zeros(n, n);
+        let more = others.len();
+        let mut columns = slices(&self.columns);
+        columns.extend(slices(others));
+        let mut right = slices(others);
+        right.push(residual);
+        let fresh = products(&columns, &right, 0..residual.len());
+        let mut gram = DMatrix::zeros(fixed + more, fixed + more);
         gram.view_mut((0, 0), (fixed, fixed)).copy_from(&self.gram);
-        let column = |index: usize| if index < fixed { &self.columns[index] } else { &others[index - fixed] };
-        let drive = DVector::from_fn(n, |index, _| dot(column(index), residual));
-        for own in fixed..n {
-            for other in 0..=own {
-                let product = dot(column(own), column(other));
-                gram[(own, other)] = product;
-                gram[(other, own)] = product;
-            }
-        }
-        (gram, drive, Vec::new())
+        gram.columns_mut(fixed, more).copy_from(&fresh.columns(0, more));
+        gram.view_mut((fixed, 0), (more, fixed)).copy_from(&fresh.view((0, 0), (fixed, more)).transpose());
+        (gram, fresh.column(more).into_owned())
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::normal::solve;
+use super::normal::{products, slices, solve};
 use super::refine::{Pull, rebase};
 use super::{Fit, Problem, refine};
 use crate::record::{Record, Signal};
@@ -21,8 +21,6 @@ pub struct Search {
     pub null: Fit,
     /// Sets, the most probable first.
     pub fits: Vec<Fit>,
-    /// Linear evidence of each candidate over the null.
-    pub singles: Vec<f64>,
 }
 
 /// Refined singles, and refined extensions of each of the best.
@@ -39,15 +37,13 @@ pub fn search(problem: &mut Problem) -> Search {
     let null = polish(problem, refine(problem, &Set::default(), &[], None, true));
     rebase(problem, &null);
     let problem = &*problem;
-    let ranked = extensions(problem, &null);
-    let singles = ranked.iter().map(|entry| entry.1).collect();
     let mut fits = Vec::new();
-    let first = best_by_effect(problem, &ranked, &[], SINGLES);
+    let first = best_by_effect(problem, extensions(problem, &null), SINGLES);
     fits.par_extend(
         first
             .par_iter()
-            .filter(|(index, gain)| promising(problem, *index, *gain))
-            .map(|(index, _)| extend(problem, &null, *index)),
+            .filter(|extension| promising(problem, extension))
+            .map(|extension| extend(problem, &null, extension)),
     );
     sort(problem, &mut fits);
     for size in 1..3 {
@@ -56,11 +52,10 @@ pub fn search(problem: &mut Problem) -> Search {
         let wider: Vec<Fit> = seeds
             .par_iter()
             .flat_map(|seed| {
-                let ranked = extensions(problem, seed);
-                let next = best_by_effect(problem, &ranked, &seed.set.0, EXTENSIONS);
+                let next = best_by_effect(problem, extensions(problem, seed), EXTENSIONS);
                 next.into_par_iter()
-                    .filter(|(index, gain)| promising(problem, *index, *gain))
-                    .map(|(index, _)| extend(problem, seed, index))
+                    .filter(|extension| promising(problem, extension))
+                    .map(|extension| extend(problem, seed, &extension))
             })
             .collect();
         for fit in wider {
@@ -71,12 +66,15 @@ pub fn search(problem: &mut Problem) -> Search {
         sort(problem, &mut fits);
     }
     // what is close to the best is brought to its end before it is judged
-    let last: Vec<Fit> = fits.drain(..fits.len().min(POLISHED)).collect();
+    let temper = temper(problem, &fits);
+    let best = fits.first().map_or(0.0, |fit| fit.evidence(temper));
+    let close = fits.iter().take(POLISHED).filter(|fit| best - fit.evidence(temper) < CLOSE).count();
+    let last: Vec<Fit> = fits.drain(..close).collect();
     let last: Vec<Fit> = last.into_par_iter().map(|fit| polish(problem, fit)).collect();
     fits.splice(0..0, last);
     sort(problem, &mut fits);
     without_idle(problem, &mut fits);
-    Search { null, fits, singles }
+    Search { null, fits }
 }
 
 /// A set with a member that is zero within its error was only the better way down: the set without it starts there.
@@ -113,33 +111,31 @@ fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
 
 /// Hypotheses that are fitted until nothing moves any more.
 const POLISHED: usize = 4;
+/// How far behind the best a hypothesis may be for that [nats].
+const CLOSE: f64 = 60.0;
 
-/// Fits on from where a fit ended, until it stands still.
-fn polish(problem: &Problem, mut fit: Fit) -> Fit {
-    for _ in 0..2 {
-        let next = refine(problem, &fit.set, &fit.values, Some(&fit), true);
-        let gained = 0.5 * (fit.square + fit.prior) - 0.5 * (next.square + next.prior);
-        if next.volume.is_finite() {
-            fit = next;
-        }
-        if gained < 0.5 {
-            break;
-        }
-    }
-    fit
+/// Fits on from where a fit ended, with sensitivities of its own, until it stands still.
+fn polish(problem: &Problem, fit: Fit) -> Fit {
+    let next = refine(problem, &fit.set, &fit.values, Some(&fit), true);
+    if next.volume.is_finite() { next } else { fit }
 }
 
-fn promising(problem: &Problem, index: usize, gain: f64) -> bool {
-    gain > if problem.candidates[index].releases.is_empty() { PROMISE } else { PROMISE_OF_SHIFT }
+fn promising(problem: &Problem, extension: &Extension) -> bool {
+    extension.gain > if problem.candidates[extension.index].releases.is_empty() { PROMISE } else { PROMISE_OF_SHIFT }
 }
 
 /// How much of the best fit's excess is put down to the formulation of its effects.
 const FORMULATION: f64 = 0.01;
 
+/// The noise that the best fit leaves, over that of the sensors.
+fn temper(problem: &Problem, fits: &[Fit]) -> f64 {
+    let best = fits.iter().map(|fit| fit.square).fold(f64::MAX, f64::min);
+    (FORMULATION * (best - problem.whitener.count() as f64)).max(1.0)
+}
+
 /// By evidence under the noise that the best of them leaves.
 fn sort(problem: &Problem, fits: &mut [Fit]) {
-    let best = fits.iter().map(|fit| fit.square).fold(f64::MAX, f64::min);
-    let temper = (FORMULATION * (best - problem.whitener.count() as f64)).max(1.0);
+    let temper = temper(problem, fits);
     fits.sort_by(|a, b| b.evidence(temper).total_cmp(&a.evidence(temper)));
 }
 
@@ -153,12 +149,21 @@ pub(crate) fn same(problem: &Problem, a: &Set, b: &Set) -> bool {
     names(a) == names(b)
 }
 
-/// Linear evidence of one candidate more, at a fit; and its amplitudes.
-fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
-    let all = problem.whitened.len();
-    let drive: Vec<f64> =
-        problem.whitened.par_iter().map(|column| column.iter().zip(&fit.residual).map(|(a, b)| a * b).sum()).collect();
-    let mut drive = nalgebra::DVector::from_vec(drive);
+/// One candidate more.
+#[derive(Debug, Clone)]
+struct Extension {
+    /// The candidate.
+    index: usize,
+    /// Linear evidence over the fit that it extends [nats].
+    gain: f64,
+    /// What the linear fit makes of its columns.
+    amplitudes: Vec<f64>,
+}
+
+/// Every candidate more, at a fit.
+fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
+    let columns = slices(&problem.whitened);
+    let mut drive = products(&columns, &[&fit.residual], 0..fit.residual.len()).column(0).into_owned();
     // priors pull the shifts that the fit has already
     let (chosen, mut precision) = problem.chosen(&fit.set.0);
     let begin = problem.columns.begin;
@@ -167,12 +172,12 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
         drive[begin + place] -= slope;
         precision[begin + place] = pull.curvature[place];
     }
-    debug_assert_eq!(drive.len(), all);
-    let base = solve(&problem.normal.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.evidence);
+    let base = solve(&problem.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.evidence);
     (0..problem.candidates.len())
+        .into_par_iter()
         .map(|index| {
             if fit.set.0.iter().any(|&has| problem.candidates[has].effect == problem.candidates[index].effect) {
-                return (index, f64::NEG_INFINITY, Vec::new());
+                return hopeless(index);
             }
             let mut set = fit.set.0.clone();
             set.push(index);
@@ -186,8 +191,8 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
             wide_precision[begin..begin + fit.shifts.len()].copy_from_slice(&wide_pull.curvature);
             let released = wide_pull.walls - pull.walls - 0.5 * (pull.cost - wide_pull.cost);
             let candidate = &problem.candidates[index];
-            let Some(solution) = solve(&problem.normal.gram, &drive, &wide, &wide_precision) else {
-                return (index, f64::NEG_INFINITY, Vec::new());
+            let Some(solution) = solve(&problem.gram, &drive, &wide, &wide_precision) else {
+                return hopeless(index);
             };
             let amplitudes = if candidate.releases.is_empty() {
                 let from = wide.len() - candidate.probes.len();
@@ -205,25 +210,22 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<(usize, f64, Vec<f64>)> {
             } else {
                 f64::NEG_INFINITY
             };
-            (index, gain, amplitudes)
+            Extension { index, gain, amplitudes }
         })
         .collect()
 }
 
+fn hopeless(index: usize) -> Extension {
+    Extension { index, gain: f64::NEG_INFINITY, amplitudes: Vec::new() }
+}
+
 /// The best candidate of each effect, the best effects first.
-fn best_by_effect(
-    problem: &Problem,
-    ranked: &[(usize, f64, Vec<f64>)],
-    taken: &[usize],
-    count: usize,
-) -> Vec<(usize, f64)> {
-    let mut order: Vec<(usize, f64)> =
-        ranked.iter().map(|(index, gain, _)| (*index, *gain)).filter(|(index, _)| !taken.contains(index)).collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+fn best_by_effect(problem: &Problem, mut order: Vec<Extension>, count: usize) -> Vec<Extension> {
+    order.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let mut seen: Vec<&str> = Vec::new();
-    order.retain(|(index, gain)| {
-        let name = problem.candidates[*index].effect;
-        let new = !seen.contains(&name) && gain.is_finite();
+    order.retain(|extension| {
+        let name = problem.candidates[extension.index].effect;
+        let new = !seen.contains(&name) && extension.gain.is_finite();
         seen.push(name);
         new
     });
@@ -231,12 +233,11 @@ fn best_by_effect(
     order
 }
 
-fn extend(problem: &Problem, from: &Fit, index: usize) -> Fit {
-    let amplitudes = extensions(problem, from).swap_remove(index).2;
+fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
     let mut set = from.set.clone();
-    set.0.push(index);
+    set.0.push(extension.index);
     let mut values = from.values.clone();
-    values.push(problem.candidates[index].values(&amplitudes));
+    values.push(problem.candidates[extension.index].values(&extension.amplitudes));
     refine(problem, &set, &values, Some(from), false)
 }
 

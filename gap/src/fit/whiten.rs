@@ -8,7 +8,7 @@
 //! to the channel), b noise of low frequency with its corner. Only what has one of these shapes is noise. Fitted by
 //! Whittle's likelihood to medians over segments, so that what happens now and then is no noise either. While the
 //! bearing turns around, noise of the logged rate comes through the slope of the friction law: there
-//! `P + s^2 |G(f)|^2`, s the torque that the rate's noise makes.
+//! `P + s^2 W(f)^2 |G(f)|^2`, s the torque that the rate's noise makes, W what is left of it.
 
 use std::fmt;
 use std::sync::Arc;
@@ -16,11 +16,16 @@ use std::sync::Arc;
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
+use crate::record::RateNoise;
+
 /// Rows of a segment.
 const SEGMENT: usize = 4096;
 /// Bands in which power is taken, and steps of the fit.
 const BANDS: usize = 36;
 const STEPS: usize = 120;
+/// Share of a segment that has to count.
+const HALF: f64 = 0.5;
+const TENTH: f64 = 0.1;
 /// Least power of noise, over the white noise that the samples themselves show.
 const LEAST_POWER: f64 = 1e-3;
 /// Corners that are tried [Hz].
@@ -75,8 +80,10 @@ pub struct Loop<'a> {
     pub impulse: &'a [Vec<f64>],
     /// Rows at which the bearing may turn around, and those just after.
     pub turning: &'a [bool],
-    /// s, in units of the impulse.
+    /// s of the rate's noise as logged, in units of the impulse.
     pub turning_noise: f64,
+    /// What is left of that noise.
+    pub rate_noise: &'a RateNoise,
     /// Time between two rows [s].
     pub period_s: f64,
 }
@@ -89,19 +96,30 @@ impl Whitener {
         let plans = Plans::new(rows + SEGMENT.min(rows));
         let step_hz = 1.0 / (plans.length as f64 * behind.period_s);
         let quiet: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && !turning).collect();
+        let turns: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && *turning).collect();
         let mut noise = Vec::new();
         let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
         for (channel, impulse) in residual.iter().zip(behind.impulse) {
             let response: Vec<f64> = plans.lines(impulse).iter().map(Complex::norm_sqr).collect();
             let shape = |hz: f64| at(&response, hz / step_hz);
-            let bands = Bands::new(channel, if enough(&quiet) { &quiet } else { valid }, behind.period_s);
-            let own = bands.fit(&shape);
+            // where hardly anything else is, the rows that turn around show their noise themselves
+            let aside = Some(Bands::new(channel, &quiet, HALF, behind.period_s));
+            let aside = aside.filter(|bands| enough(&quiet) && bands.any());
+            let most = if aside.is_some() { behind.turning_noise.powi(2) } else { 0.0 };
+            let own = aside.unwrap_or_else(|| Bands::new(channel, valid, HALF, behind.period_s)).fit(&shape);
+            let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s).powi(2) * shape(hz);
+            // at most what the slope makes of it: the gimbal follows the bearing and takes a part away
+            let turns = Bands::new(channel, &turns, TENTH, behind.period_s);
+            let turning_power = turns.fit_more(&|hz| own.power(hz, shape(hz)), &passed, most);
             let gain = |more: f64| -> Vec<f64> {
-                let of = |line: usize| own.power(line as f64 * step_hz, response[line]) + more * response[line];
+                let of = |line: usize| {
+                    let hz = line as f64 * step_hz;
+                    own.power(hz, response[line]) + more * passed(hz)
+                };
                 (0..=plans.length / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect()
             };
             gains.push(gain(0.0));
-            turning_gains.push(gain(behind.turning_noise * behind.turning_noise));
+            turning_gains.push(gain(turning_power));
             noise.push(own);
         }
         Self { noise, valid: valid.to_vec(), gains, turning_gains, turning: behind.turning.to_vec(), plans }
@@ -131,6 +149,12 @@ impl Whitener {
             }
         }
         out
+    }
+
+    /// Samples of all channels.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.gains.len() * self.valid.len()
     }
 
     /// Samples that count.
@@ -191,7 +215,7 @@ struct Bands {
 
 impl Bands {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
-    fn new(values: &[f64], valid: &[bool], period_s: f64) -> Self {
+    fn new(values: &[f64], valid: &[bool], least: f64, period_s: f64) -> Self {
         let length = SEGMENT.min(values.len());
         let plans = Plans::new(length);
         let window: Vec<f64> =
@@ -201,7 +225,7 @@ impl Bands {
             let of = |k: usize| if valid[start + k] { values[start + k] * window[k] } else { 0.0 };
             let gain: f64 = (0..length).filter(|&k| valid[start + k]).map(|k| window[k] * window[k]).sum();
             let all: f64 = window.iter().map(|value| value * value).sum();
-            if gain > 0.5 * all {
+            if gain > least * all {
                 let tapered: Vec<f64> = (0..length).map(of).collect();
                 segments.push(plans.lines(&tapered).iter().map(|line| line.norm_sqr() / gain).collect());
             }
@@ -229,10 +253,33 @@ impl Bands {
         bands
     }
 
+    fn any(&self) -> bool {
+        !self.hz.is_empty()
+    }
+
+    /// How much of a shape more makes the measured powers most likely.
+    fn fit_more(&self, known: &dyn Fn(f64) -> f64, more: &dyn Fn(f64) -> f64, most: f64) -> f64 {
+        let parts: Vec<(f64, f64)> = self.hz.iter().map(|&hz| (known(hz), more(hz))).collect();
+        let mut share = most;
+        for _ in 0..STEPS {
+            let (mut up, mut down) = (0.0, 0.0);
+            for (((known, more), measured), weight) in parts.iter().zip(&self.power).zip(&self.weight) {
+                let model = (known + share * more).max(1e-300);
+                up += weight * more * measured / (model * model);
+                down += weight * more / model;
+            }
+            share = (share * up / down.max(1e-300)).min(most);
+        }
+        share
+    }
+
     /// The shapes that make the measured powers most likely.
     fn fit(&self, response: &dyn Fn(f64) -> f64) -> Noise {
         let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, low: 0.0, corner_hz: 1.0 });
-        let mean = self.power.iter().sum::<f64>() / self.power.len().max(1) as f64;
+        if !self.any() {
+            return best.1;
+        }
+        let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = self.hz.iter().map(|hz| response(*hz)).fold(1e-300, f64::max);
         for corner_hz in CORNERS_HZ {
             let bases: Vec<[f64; 3]> =

@@ -2,8 +2,9 @@
 
 use gimbal_model_file::Tolerance;
 use gimbal_plant::Effect;
+use nalgebra::DVector;
 
-use crate::fit::Problem;
+use crate::fit::{Problem, solve};
 
 /// Standard errors at which an effect is named.
 const SEEN: f64 = 7.0;
@@ -24,6 +25,7 @@ pub struct Detectable {
 /// For every effect of the library.
 #[must_use]
 pub fn detectable(problem: &Problem, tolerance: &Tolerance) -> Vec<Detectable> {
+    let nothing = DVector::zeros(problem.gram.nrows());
     Effect::all()
         .map(|effect| {
             let parameter = effect.parameters()[0];
@@ -31,7 +33,7 @@ pub fn detectable(problem: &Problem, tolerance: &Tolerance) -> Vec<Detectable> {
                 problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect.name());
             let size = sizes.filter_map(|(index, candidate)| {
                 let (chosen, precision) = problem.chosen(&[index]);
-                let solution = problem.normal.solve(&chosen, &precision)?;
+                let solution = solve(&problem.gram, &nothing, &chosen, &precision)?;
                 if let Some(release) = candidate.releases.first() {
                     let place = problem.columns.begin + problem.nuisances.iter().position(|n| n.name == *release)?;
                     let sigma = solution.covariance[(place, place)].sqrt();

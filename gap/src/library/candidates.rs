@@ -56,7 +56,7 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "mass_unbalance" => vec![released(effect, &["unbalance x", "unbalance y"])],
         // the pick-off shows the stop itself, and its steps
         "stop_angle" | "pickoff_quantisation" | "torque_scale" => Vec::new(),
-        "float_torque" | "g_sensitive_float_torque" if !offer.sees_gimbal => Vec::new(),
+
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
         "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),
@@ -64,7 +64,7 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "cable_hysteresis" => grid(effect, &[0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])),
         "flexible_mode" => grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, 0.03])),
         "presliding" => secants(effect, &[3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along])),
-        "loop_delay" => secants(effect, &[vec![2.03e-4]]),
+        "loop_delay" => secants(effect, &[3e-5, 2e-4].map(|delay_s| vec![delay_s])),
         "dead_zone" => secants(effect, &[3e-5, 1.2e-4, 5e-4].map(|width| vec![width])),
         "torque_saturation" => {
             let peak = offer.peak_torque_nm;

@@ -9,6 +9,10 @@ const UNIFORM: f64 = 0.7;
 /// The same for what lies beyond it.
 const BEYOND: f64 = 0.12;
 
+/// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of 1 % would not.
+const STEP: f64 = 0.02;
+/// Time constants of the electronics are mostly closer to what they should be than gains and torques are.
+const CLOSER: f64 = 0.4;
 /// Alignment of the accelerometers with the platform's axes [rad].
 const ALIGNMENT_RAD: f64 = 1e-3;
 
@@ -19,6 +23,8 @@ pub struct Nuisance {
     pub name: &'static str,
     /// Standard deviation, in units of the shift.
     pub sigma: f64,
+    /// Up to here a shift is no gap.
+    pub tolerance: f64,
     /// Step of the finite difference.
     pub step: f64,
     shift: fn(&mut Physics, f64),
@@ -31,11 +37,11 @@ impl Nuisance {
     /// holds at the shift `ahead`.
     ///
     /// ```text
-    /// cost = (s / (0.7 tol))^2 + (max(0, |s| - tol) / (0.25 tol))^2
+    /// cost = (s / sigma)^2 + (max(0, |s| - tol) / (0.12 tol))^2        sigma 0.7 tol, or 0.28 tol for a time constant
     /// ```
     #[must_use]
     pub fn prior(&self, shift: f64, ahead: f64) -> (f64, f64, f64) {
-        let tolerance = self.tolerance();
+        let tolerance = self.tolerance;
         let wall = BEYOND * tolerance;
         let flat = 1.0 / (self.sigma * self.sigma);
         if ahead.abs() <= tolerance {
@@ -44,12 +50,6 @@ impl Nuisance {
         let steep = 1.0 / (wall * wall);
         let beyond = shift - tolerance.copysign(ahead);
         (flat * shift + steep * beyond, flat + steep, flat * shift * shift + steep * beyond * beyond)
-    }
-
-    /// Up to here a shift is no gap.
-    #[must_use]
-    pub fn tolerance(&self) -> f64 {
-        self.sigma / UNIFORM
     }
 
     /// The change that a shift stands for: relative but for those that are added.
@@ -74,11 +74,17 @@ macro_rules! relative {
         Nuisance {
             name: $name,
             sigma: UNIFORM * $tolerance,
-            step: 0.3 * $tolerance,
+            tolerance: $tolerance,
+            step: STEP * $tolerance,
             shift: |$physics: &mut Physics, by: f64| $field *= by.exp(),
             absolute: false,
         }
     };
+}
+
+/// Within its tolerance, near its nominal value rather than anywhere.
+fn closer(nuisance: Nuisance) -> Nuisance {
+    Nuisance { sigma: CLOSER * nuisance.sigma, ..nuisance }
 }
 
 /// Every nominal parameter of the platform.
@@ -87,8 +93,14 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
     let default = tolerance.default_relative;
     let unbalance = &physics.config.unbalance;
     let size = unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6);
-    let added =
-        |name, sigma: f64, shift| Nuisance { name, sigma: UNIFORM * sigma, step: 0.3 * sigma, shift, absolute: true };
+    let added = |name, tolerance: f64, shift| Nuisance {
+        name,
+        sigma: UNIFORM * tolerance,
+        tolerance,
+        step: STEP * tolerance,
+        shift,
+        absolute: true,
+    };
     vec![
         relative!(tolerance.friction_level, "friction_level", p => p.friction.load_factor),
         relative!(tolerance.viscous_friction, "bearing viscosity", p => p.friction.viscous_factor),
@@ -108,15 +120,15 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative!(tolerance.gimbal_inertia, "gimbal_inertia", p => p.config.servo.gimbal_inertia_kg_m2),
         relative!(default, "float inertia", p => p.config.gyro.float_inertia_kg_m2),
         relative!(default, "slip rate", p => p.config.bearing.slip_rate_radps),
-        relative!(default, "T1", p => p.config.servo.lead_time_constants_s[0]),
-        relative!(default, "T2", p => p.config.servo.lead_time_constants_s[1]),
-        relative!(default, "T3", p => p.config.servo.lead_time_constants_s[2]),
-        relative!(default, "T4", p => p.config.servo.lead_time_constants_s[3]),
-        relative!(default, "T5", p => p.config.servo.lead_time_constants_s[4]),
-        relative!(default, "T6", p => p.config.servo.lag_time_constants_s[0]),
-        relative!(default, "T7", p => p.config.servo.lag_time_constants_s[1]),
-        relative!(default, "T8", p => p.config.servo.lag_time_constants_s[2]),
-        relative!(default, "T9", p => p.config.servo.lag_time_constants_s[3]),
+        closer(relative!(default, "T1", p => p.config.servo.lead_time_constants_s[0])),
+        closer(relative!(default, "T2", p => p.config.servo.lead_time_constants_s[1])),
+        closer(relative!(default, "T3", p => p.config.servo.lead_time_constants_s[2])),
+        closer(relative!(default, "T4", p => p.config.servo.lead_time_constants_s[3])),
+        closer(relative!(default, "T5", p => p.config.servo.lead_time_constants_s[4])),
+        closer(relative!(default, "T6", p => p.config.servo.lag_time_constants_s[0])),
+        closer(relative!(default, "T7", p => p.config.servo.lag_time_constants_s[1])),
+        closer(relative!(default, "T8", p => p.config.servo.lag_time_constants_s[2])),
+        closer(relative!(default, "T9", p => p.config.servo.lag_time_constants_s[3])),
         relative!(tolerance.pickoff_scale, "pickoff_scale", p => p.measurement.pickoff_factor),
         relative!(tolerance.torque_scale, "torque_scale", p => p.measurement.torque_factor),
     ]

@@ -2,27 +2,28 @@
 
 use gimbal_plant::{Block, Effect};
 
-use crate::fit::Problem;
+use crate::fit::{Problem, products, slices, solve};
 
 /// The blocks in the order of the report.
 const BLOCKS: [Block; 6] =
     [Block::Friction, Block::Disturbance, Block::Servo, Block::Gyro, Block::Structure, Block::Measurement];
 
-/// Share of each block in what the library explains of the nominal residual.
+/// Share of each block in what the library explains of a residual.
 #[must_use]
-pub fn shares(problem: &Problem) -> Vec<(String, f64)> {
+pub fn shares(problem: &Problem, residual: &[f64]) -> Vec<(String, f64)> {
     let in_block = |block: Block| -> Vec<usize> {
         (0..problem.candidates.len())
             .filter(|&index| Effect::from_name(problem.candidates[index].effect).is_some_and(|e| e.block() == block))
             .collect()
     };
     let members: Vec<Vec<usize>> = BLOCKS.iter().map(|block| in_block(*block)).collect();
+    let drive = products(&slices(&problem.whitened), &[residual], 0..residual.len()).column(0).into_owned();
     let gain: Vec<f64> = (0..1 << BLOCKS.len())
         .map(|subset: usize| {
             let set: Vec<usize> =
                 (0..BLOCKS.len()).filter(|b| subset >> b & 1 == 1).flat_map(|b| members[b].clone()).collect();
             let (chosen, precision) = problem.chosen(&set);
-            problem.normal.solve(&chosen, &precision).map_or(0.0, |solution| solution.gain)
+            solve(&problem.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.gain)
         })
         .collect();
     let factorial = |n: usize| (1..=n).product::<usize>().max(1) as f64;

@@ -2,6 +2,8 @@
 
 mod channel;
 mod faults;
+mod quiet;
+mod rough;
 mod stuck;
 
 use gimbal_log::{Column, Log};
@@ -10,12 +12,16 @@ use gimbal_servo::Config;
 use crate::simulate::Inputs;
 pub use channel::{Channel, Signal};
 pub use faults::faults;
+pub use quiet::RateNoise;
+pub(crate) use rough::rough;
 
 /// Shortest log that a diagnosis is made from [s].
 const SHORTEST_S: f64 = 6.0;
 /// Least rms change of the vehicle rate [rad/s] and of the acceleration [m/s2] that excite anything.
 const LEAST_RATE_RADPS: f64 = 1.5e-3;
 const LEAST_ACCEL_MPS2: f64 = 0.1;
+/// Share of the nominal stop from which on the float may have touched it.
+const NEAR_STOP: f64 = 0.95;
 /// Share of its largest excursion within which the pick-off counts as on the stop.
 const PLATEAU_SHARE: f64 = 4e-3;
 
@@ -30,6 +36,8 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// Angle of the stop as the pick-off shows it, when it was reached [rad].
     pub plateau_rad: Option<f64>,
+    /// Noise of the rate.
+    pub rate_noise: RateNoise,
     /// What makes a diagnosis impossible, in words.
     pub faults: Vec<String>,
     /// What is worth knowing.
@@ -89,8 +97,16 @@ impl Record {
             }
             channels.push(Channel::new(signal, grid.place(values)));
         }
-        let mut record =
-            Self { first_s: time.first().copied().unwrap_or(0.0), inputs, channels, plateau_rad: None, faults, notes };
+        let rate_noise = RateNoise::logged(&inputs.rate_radps);
+        let mut record = Self {
+            first_s: time.first().copied().unwrap_or(0.0),
+            inputs,
+            channels,
+            plateau_rad: None,
+            rate_noise,
+            faults,
+            notes,
+        };
         record.find_plateau(config);
         record.look_at_excitation(grid.rows as f64 * period_s);
         record
@@ -147,11 +163,17 @@ impl Record {
             }
             start = k + 1;
         }
-        if level.is_empty() {
-            return;
-        }
         level.sort_by(f64::total_cmp);
-        self.plateau_rad = Some(level[level.len() / 2]);
+        self.plateau_rad = level.get(level.len() / 2).copied();
+        if level.is_empty() {
+            // a touch too short to be seen, wherever the stop is within its tolerance
+            let near = NEAR_STOP * config.gyro.stop_angle_rad;
+            if peak < near {
+                return;
+            }
+            level = theta.values.iter().map(|value| value.abs()).filter(|value| *value > near).collect();
+            on_stop.iter_mut().zip(&theta.values).for_each(|(on, value)| *on = value.abs() > near);
+        }
         let settle = (2.0 / period_s) as usize;
         let mut wait = 0;
         for (k, on_stop) in on_stop.iter().enumerate() {
@@ -163,7 +185,8 @@ impl Record {
             }
         }
         self.notes.push(format!(
-            "the float was on a stop for {:.2} s; masked with 2 s after each",
+            "the float was {} a stop for {:.2} s; masked with 2 s after each",
+            if self.plateau_rad.is_some() { "on" } else { "near" },
             level.len() as f64 * period_s
         ));
     }

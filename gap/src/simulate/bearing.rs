@@ -52,6 +52,6 @@ impl Viscous {
     }
 
     pub(crate) fn torque_nm(&self, speed_radps: f64) -> f64 {
-        if speed_radps <= self.break_radps { self.slow_nm } else { self.fast_nm * speed_radps.powf(2.0 / 3.0) }
+        if speed_radps <= self.break_radps { self.slow_nm } else { self.fast_nm * speed_radps.cbrt().powi(2) }
     }
 }

@@ -33,7 +33,7 @@ impl<const N: usize> Step<N> {
     }
 
     /// `A x + B0 u`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn free(&self, x: &[f64; N], u: &[f64; INPUTS]) -> [f64; N] {
         let mut next = [0.0; N];
         for (column, value) in self.state.iter().zip(x) {
@@ -49,7 +49,7 @@ impl<const N: usize> Step<N> {
 }
 
 /// `next += value * column`.
-#[inline]
+#[inline(always)]
 pub(crate) fn add<const N: usize>(next: &mut [f64; N], column: &[f64; N], value: f64) {
     for (next, column) in next.iter_mut().zip(column) {
         *next += column * value;

@@ -76,19 +76,31 @@ impl Inputs {
 
     /// The inputs as they were: the log has them late by `skew_s`.
     #[must_use]
-    pub fn advanced(&self, skew_s: f64, bearing: &bearing::Config) -> Self {
-        let shift = skew_s / self.period_s;
-        let moved = |values: &Vec<f64>| -> Vec<f64> { (0..values.len()).map(|k| at(values, k, shift)).collect() };
-        let mut inputs = Self {
+    pub fn advanced(&self, skew_s: f64) -> Self {
+        let later = Later::by(skew_s / self.period_s);
+        let moved = |values: &Vec<f64>| later.line(values);
+        let begin_rad = self.turned_rad.first().copied().unwrap_or(0.0);
+        let mut turned_rad = moved(&self.turned_rad);
+        let off = turned_rad.first().map_or(0.0, |first| begin_rad - first);
+        for turned in &mut turned_rad {
+            *turned += off;
+        }
+        // between two rows the load stands above the line by a parabola
+        let mut load_nm = moved(&self.load_nm);
+        for (load, bulge) in load_nm.iter_mut().zip(later.end(&self.bulge_nm)) {
+            *load += 6.0 * later.share * (1.0 - later.share) * bulge;
+        }
+        Self {
             period_s: self.period_s,
             start_s: self.start_s,
             accel_mps2: [0, 1, 2].map(|axis| moved(&self.accel_mps2[axis])),
             rate_radps: moved(&self.rate_radps),
             cross_radps: moved(&self.cross_radps),
-            ..Self::default()
-        };
-        inputs.complete(bearing, self.turned_rad.first().copied().unwrap_or(0.0));
-        inputs
+            turned_rad,
+            load_nm,
+            load_by_turn: self.load_by_turn.each_ref().map(moved),
+            bulge_nm: moved(&self.bulge_nm),
+        }
     }
 }
 
@@ -97,12 +109,32 @@ pub(crate) fn turned([x, y, z]: [f64; 3], [about_x, about_y, about_z]: [f64; 3])
     [x + about_y * z - about_z * y, y + about_z * x - about_x * z, z + about_x * y - about_y * x]
 }
 
-/// The value `shift` rows after row k, on the line between two rows.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "a row")]
-fn at(values: &[f64], k: usize, shift: f64) -> f64 {
-    let place = (k as f64 + shift).clamp(0.0, values.len() as f64 - 1.0);
-    let low = (place.floor() as usize).min(values.len().saturating_sub(2));
-    let share = place - low as f64;
-    let next = values.get(low + 1).copied().unwrap_or(values[low]);
-    values[low] + share * (next - values[low])
+/// Some rows and a part of one later.
+struct Later {
+    rows: isize,
+    share: f64,
+}
+
+impl Later {
+    #[allow(clippy::cast_possible_truncation, reason = "rows")]
+    fn by(shift: f64) -> Self {
+        Self { rows: shift.floor() as isize, share: shift - shift.floor() }
+    }
+
+    /// Row after row, the ends held.
+    fn rows<'a>(&self, values: &'a [f64], more: isize) -> impl Iterator<Item = f64> + 'a {
+        let shift = self.rows + more;
+        let last = values.len().saturating_sub(1);
+        (0..values.len()).map(move |k| values[k.saturating_add_signed(shift).min(last)])
+    }
+
+    /// On the line between two rows.
+    fn line(&self, values: &[f64]) -> Vec<f64> {
+        self.rows(values, 0).zip(self.rows(values, 1)).map(|(a, b)| a + self.share * (b - a)).collect()
+    }
+
+    /// At the end of the period in which the later instant is.
+    fn end<'a>(&self, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.rows(values, 1)
+    }
 }

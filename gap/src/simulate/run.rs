@@ -1,5 +1,7 @@
 //! Row by row through the inputs.
 
+use pulp::Arch;
+
 use super::bearing::Viscous;
 use super::chain::{Chain, FULL, INPUTS, PHI, PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
 use super::discrete::{Step, add};
@@ -62,13 +64,16 @@ pub fn predict(physics: &Physics, inputs: &Inputs, begin: &Begin, rows: usize) -
     let inputs = if physics.measurement.skew_s == 0.0 {
         inputs
     } else {
-        shifted = inputs.advanced(physics.measurement.skew_s, &physics.config.bearing);
+        shifted = inputs.advanced(physics.measurement.skew_s);
         &shifted
     };
+    // the widest vectors that there are; bits are the same with all
     let mut prediction = if Chain::states(physics) == PLAIN {
-        Machine::<PLAIN>::new(physics, inputs).run(begin, rows)
+        let machine = Machine::<PLAIN>::new(physics, inputs);
+        Arch::new().dispatch(|| machine.run(begin, rows))
     } else {
-        Machine::<FULL>::new(physics, inputs).run(begin, rows)
+        let machine = Machine::<FULL>::new(physics, inputs);
+        Arch::new().dispatch(|| machine.run(begin, rows))
     };
     let sensors = physics.measurement;
     for theta in &mut prediction.gyro_angle_rad {
@@ -93,6 +98,7 @@ struct Now {
 }
 
 impl Now {
+    #[inline(always)]
     fn toward(&self, next: &Self, share: f64) -> Self {
         let line = |a: f64, b: f64| a + share * (b - a);
         Self {
@@ -147,6 +153,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         Self { physics, inputs, viscous, free: steps(&off), held: steps(&on), full_steps, command }
     }
 
+    #[inline(always)]
     fn now(&self, k: usize) -> Now {
         let inputs = self.inputs;
         let logged = [0, 1, 2].map(|axis| inputs.accel_mps2[axis][k]);
@@ -167,6 +174,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         now
     }
 
+    #[inline(always)]
     fn run(&self, begin: &Begin, rows: usize) -> Prediction {
         let rows = rows.min(self.inputs.len());
         let mut out = Prediction {
@@ -195,6 +203,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         out
     }
 
+    #[inline(always)]
     fn begin(&self, begin: &Begin, now: &Now) -> Running<N> {
         let mut x = [0.0; N];
         x[..PLAIN].copy_from_slice(&begin.state);
@@ -210,6 +219,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     /// One row: full steps where nothing turns around, short ones elsewhere.
+    #[inline(always)]
     fn row(&self, state: &mut Running<N>, now: &Now, next: &Now) {
         let mut from = *now;
         for part in 1..=self.full_steps {
@@ -233,6 +243,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     /// Whether friction may turn around before `to`, or the float is near a stop.
+    #[inline(always)]
     fn turns(&self, state: &Running<N>, to: &Now) -> bool {
         let near = 3.0 * self.physics.config.bearing.slip_rate_radps;
         let ahead = to.rate - state.x[PHI_RATE];
@@ -247,6 +258,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     /// Whether the motor's torque is near a corner of its characteristic.
+    #[inline(always)]
     fn motor_bends(&self, state: &Running<N>) -> bool {
         let (dead_nm, limit_nm) = (self.physics.dead_zone_nm, self.physics.limit_nm.unwrap_or(f64::MAX));
         if dead_nm <= 0.0 && limit_nm >= f64::MAX {
@@ -256,6 +268,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         command < 2.0 * dead_nm || command > 0.95 * limit_nm
     }
 
+    #[inline(always)]
     fn step(&self, state: &mut Running<N>, to: &Now, short: usize) {
         let step = if state.stop == 0 { &self.free[short] } else { &self.held[short] };
         let mut x = step.free(&state.x, &state.u);
@@ -302,12 +315,14 @@ impl<'a, const N: usize> Machine<'a, N> {
         };
     }
 
+    #[inline(always)]
     fn step_s(&self, short: usize) -> f64 {
         let full_s = self.inputs.period_s / f64::from(self.full_steps);
         if short == 0 { full_s } else { full_s / f64::from(SHORT) }
     }
 
     /// The clamp, implicit: `w + brake level clamp(w / w_s) = rate`; and its mean where the step crosses a corner.
+    #[inline(always)]
     fn clamp(&self, state: &Running<N>, rate: f64, brake: f64, level: f64) -> (f64, Option<f64>, f64) {
         let slip = self.physics.config.bearing.slip_rate_radps;
         let asymmetry = self.physics.friction.asymmetry;
@@ -336,6 +351,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     /// Dahl's build-up over the displacement of the step.
+    #[inline(always)]
     fn build_up(&self, state: &Running<N>, [rate, brake, level, step_s]: [f64; 4]) -> (f64, Option<f64>, f64) {
         let along = self.physics.friction.presliding_rad;
         let asymmetry = self.physics.friction.asymmetry;
@@ -359,6 +375,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     /// `T_load + T_visc` and what effects make of it.
+    #[inline(always)]
     fn level(&self, now: &Now, w: f64) -> f64 {
         if self.physics.config.bearing.count == 0 {
             return 0.0;
@@ -379,6 +396,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     /// Torques on the gimbal but for the bearings', and what the motor fails to give.
+    #[inline(always)]
     fn others(&self, now: &Now, x: &[f64; N], hysteresis: f64) -> f64 {
         let physics = self.physics;
         let [ax, ay, _] = now.accel;
@@ -405,6 +423,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         torque
     }
 
+    #[inline(always)]
     fn hysteresis_after(&self, z: f64, turned: f64) -> f64 {
         let Some(cable) = self.physics.hysteresis else { return z };
         let slope = |z: f64| if z * turned > 0.0 { 1.0 - z * z } else { 1.0 };
@@ -413,26 +432,31 @@ impl<'a, const N: usize> Machine<'a, N> {
         (z + moved * slope(half)).clamp(-1.0, 1.0)
     }
 
+    #[inline(always)]
     fn float_nm(&self, now: &Now) -> f64 {
         self.physics.float_nm + self.physics.float_kg_m * now.accel[0]
     }
 
+    #[inline(always)]
     fn command_nm(&self, x: &[f64; N]) -> f64 {
         if N == PLAIN { x[TORQUE] } else { self.command.iter().zip(x).map(|(share, x)| share * x).sum() }
     }
 
+    #[inline(always)]
     fn motor(&self, command_nm: f64) -> f64 {
         let limit = self.physics.limit_nm.unwrap_or(f64::INFINITY);
         let clamped = command_nm.clamp(-limit, limit);
         clamped - clamped.clamp(-self.physics.dead_zone_nm, self.physics.dead_zone_nm)
     }
 
+    #[inline(always)]
     fn seen(&self, theta: f64) -> f64 {
         let quantum = self.physics.quantum_rad;
         if quantum > 0.0 { quantum * (theta / quantum).round() } else { theta }
     }
 
     /// The float meets a stop, or leaves it.
+    #[inline(always)]
     fn contact(&self, state: &mut Running<N>) {
         let gyro = &self.physics.config.gyro;
         if state.stop == 0 {
@@ -447,6 +471,7 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 }
 
+#[inline(always)]
 fn sign(value: f64) -> f64 {
     if value > 0.0 {
         1.0

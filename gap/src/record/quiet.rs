@@ -1,0 +1,157 @@
+//! The logged rate without its sensor's noise.
+//!
+//! Where the bearing hardly slips, friction turns every error of the logged rate into torque. Wiener's filter takes
+//! out what is noise by the rate's own spectrum:
+//!
+//! ```text
+//! W(f) = max(0, 1 - N / P(f))        P the power of the logged rate, N that of its white noise
+//! ```
+//!
+//! White motion and white noise look alike in the rate; the outputs tell them apart. The filter stays when the
+//! nominal prediction from the filtered rate is closer to them from one row to the next.
+
+use gimbal_servo::Config;
+use realfft::RealFftPlanner;
+
+use super::rough::rough;
+use super::{Record, Signal};
+use crate::simulate::{Begin, Inputs, Physics, predict};
+
+/// Rows of a segment in which the spectrum is taken.
+const SEGMENT: usize = 2048;
+/// What is held to be noise at a frequency, over the noise: spectra scatter.
+const SURELY: f64 = 1.5;
+/// A row whose filtered rate is off by more standard deviations keeps its own: a step, no noise.
+const STEP: f64 = 4.0;
+/// Rows around a step that keep theirs too.
+const AROUND: usize = 20;
+/// The misfit from row to row that the filter has to bring, as a share of that without it.
+const BETTER: f64 = 0.995;
+/// Rows over which the misfit is compared.
+const APART: usize = 12;
+
+impl Record {
+    /// Filters the rate where that brings the prediction closer.
+    pub fn quieten(&mut self, config: &Config) {
+        let Some((rate_radps, pass)) = filtered(&self.inputs.rate_radps) else { return };
+        let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
+        inputs.complete(&config.bearing, self.inputs.turned_rad[0]);
+        let (as_logged, quiet) = (self.misfit(config, &self.inputs), self.misfit(config, &inputs));
+        let ratios: Vec<f64> = quiet.iter().zip(&as_logged).map(|(quiet, logged)| quiet / logged).collect();
+        if ratios.iter().all(|ratio| *ratio < 2.0 - BETTER) && ratios.iter().any(|ratio| *ratio < BETTER) {
+            self.inputs = inputs;
+            self.rate_noise.pass = pass;
+        }
+    }
+
+    /// What changes between rows that stand `APART` in the nominal misfit of each output.
+    fn misfit(&self, config: &Config, inputs: &Inputs) -> Vec<f64> {
+        let physics = Physics::nominal(config);
+        let first = |signal| self.channel(signal).filter(|channel| channel.valid[0]).map(|channel| channel.values[0]);
+        let begin = Begin::at(&physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque));
+        let prediction = predict(&physics, inputs, &begin, usize::MAX);
+        let of = |channel: &super::Channel| {
+            let predicted = crate::fit::predicted(channel.signal, &prediction);
+            let off = |k: usize| channel.values[k] - predicted[k];
+            let both = |k: &usize| channel.valid[*k] && channel.valid[k - APART];
+            (APART..self.rows()).filter(both).map(|k| (off(k) - off(k - APART)).powi(2)).sum::<f64>().max(1e-300)
+        };
+        self.channels.iter().map(of).collect()
+    }
+}
+
+/// Noise of the rate that drives the predictions.
+#[derive(Debug, Clone)]
+pub struct RateNoise {
+    /// Rms of the white noise as logged [rad/s].
+    pub rms_radps: f64,
+    /// W from zero to half the sampling rate, evenly.
+    pub pass: Vec<f64>,
+}
+
+impl RateNoise {
+    pub(super) fn logged(rate_radps: &[f64]) -> Self {
+        Self { rms_radps: rough(rate_radps, &vec![true; rate_radps.len()]), pass: vec![1.0] }
+    }
+
+    /// W at a share of half the sampling rate.
+    #[must_use]
+    pub fn pass(&self, share: f64) -> f64 {
+        between(&self.pass, share * (self.pass.len() - 1) as f64)
+    }
+}
+
+/// The rate through Wiener's filter, steps kept, and the filter; none when there is nothing to filter.
+fn filtered(rate_radps: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let rows = rate_radps.len();
+    let noise = rough(rate_radps, &vec![true; rows]);
+    if rows < 2 * SEGMENT || noise < 1e-9 {
+        return None;
+    }
+    let pass = pass(rate_radps, noise);
+    // mirrored at both ends
+    let edge = SEGMENT / 2;
+    let mut padded: Vec<f64> = (1..=edge).rev().map(|k| 2.0 * rate_radps[0] - rate_radps[k]).collect();
+    padded.extend_from_slice(rate_radps);
+    padded.extend((1..=edge).map(|k| 2.0 * rate_radps[rows - 1] - rate_radps[rows - 1 - k]));
+    let slope = (padded[padded.len() - 1] - padded[0]) / padded.len() as f64;
+    let line: Vec<f64> = (0..padded.len()).map(|k| padded[0] + slope * k as f64).collect();
+    padded.iter_mut().zip(&line).for_each(|(value, line)| *value -= line);
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (forward, back) = (planner.plan_fft_forward(padded.len()), planner.plan_fft_inverse(padded.len()));
+    let mut lines = forward.make_output_vec();
+    forward.process(&mut padded, &mut lines).ok()?;
+    let (count, length) = (lines.len(), padded.len() as f64);
+    for (index, line) in lines.iter_mut().enumerate() {
+        let place = index as f64 / (count - 1) as f64 * (pass.len() - 1) as f64;
+        *line *= between(&pass, place) / length;
+    }
+    let mut smooth = back.make_output_vec();
+    back.process(&mut lines, &mut smooth).ok()?;
+    let smooth: Vec<f64> = (0..rows).map(|k| smooth[k + edge] + line[k + edge]).collect();
+    let step = |k: usize| (smooth[k] - rate_radps[k]).abs() > STEP * noise;
+    let mut kept = vec![false; rows];
+    for k in (0..rows).filter(|&k| step(k)) {
+        kept[k.saturating_sub(AROUND)..(k + AROUND).min(rows)].fill(true);
+    }
+    Some(((0..rows).map(|k| if kept[k] { rate_radps[k] } else { smooth[k] }).collect(), pass))
+}
+
+/// W from zero to half the sampling rate.
+fn pass(values: &[f64], noise: f64) -> Vec<f64> {
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(SEGMENT);
+    let mut lines = transform.make_output_vec();
+    let window: Vec<f64> =
+        (0..SEGMENT).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / SEGMENT as f64).cos()).collect();
+    let power: f64 = window.iter().map(|value| value * value).sum();
+    let mut spectrum = vec![0.0; lines.len()];
+    let mut segments = 0.0;
+    for start in (0..=values.len() - SEGMENT).step_by(SEGMENT / 2) {
+        let segment = &values[start..start + SEGMENT];
+        let mean = segment.iter().sum::<f64>() / SEGMENT as f64;
+        let mut tapered: Vec<f64> =
+            segment.iter().zip(&window).map(|(value, window)| (value - mean) * window).collect();
+        if transform.process(&mut tapered, &mut lines).is_ok() {
+            spectrum.iter_mut().zip(&lines).for_each(|(sum, line)| *sum += line.norm_sqr() / power);
+            segments += 1.0;
+        }
+    }
+    let last = spectrum.len() - 1;
+    (0..=last)
+        .map(|line| {
+            if line < 3 {
+                return 1.0;
+            }
+            let around = &spectrum[line.saturating_sub(2)..=(line + 2).min(last)];
+            let mean = around.iter().sum::<f64>() / around.len() as f64 / segments;
+            (1.0 - SURELY * noise * noise / mean).max(0.0)
+        })
+        .collect()
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
+fn between(values: &[f64], place: f64) -> f64 {
+    let low = (place as usize).min(values.len() - 1);
+    let high = (low + 1).min(values.len() - 1);
+    values[low] + (place - low as f64) * (values[high] - values[low])
+}
