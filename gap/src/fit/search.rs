@@ -74,7 +74,21 @@ pub fn search(problem: &mut Problem) -> Search {
     fits.splice(0..0, last);
     sort(problem, &mut fits);
     without_idle(problem, &mut fits);
+    let null = from_there(problem, null, &fits);
     Search { null, fits }
+}
+
+/// The best fits may have found a way down that the nominal parameters missed: they start there once more.
+fn from_there(problem: &Problem, null: Fit, fits: &[Fit]) -> Fit {
+    let again: Vec<Fit> =
+        fits.par_iter().take(2).map(|fit| refine(problem, &Set::default(), &[], Some(fit), true)).collect();
+    let cost = |fit: &Fit| fit.square + fit.prior;
+    again.into_iter().filter(|fit| fit.volume.is_finite()).fold(
+        null,
+        |best, fit| {
+            if cost(&fit) < cost(&best) { fit } else { best }
+        },
+    )
 }
 
 /// A set with a member that is zero within its error was only the better way down: the set without it starts there.
