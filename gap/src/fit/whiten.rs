@@ -8,7 +8,8 @@
 //! to the channel), b noise of low frequency with its corner. Only what has one of these shapes is noise. Fitted by
 //! Whittle's likelihood to medians over segments, so that what happens now and then is no noise either. While the
 //! bearing turns around, noise of the logged rate comes through the slope of the friction law: there
-//! `P + s^2 W(f)^2 |G(f)|^2`, s the torque that the rate's noise makes, W what is left of it.
+//! `P + s^2 W(f) |G(f)|^2`, s the torque that the rate's noise makes, W Wiener's filter: of noise and motion it leaves that
+//! much to be off.
 
 use std::fmt;
 use std::sync::Arc;
@@ -107,7 +108,7 @@ impl Whitener {
             let aside = aside.filter(|bands| enough(&quiet) && bands.any());
             let most = if aside.is_some() { behind.turning_noise.powi(2) } else { 0.0 };
             let own = aside.unwrap_or_else(|| Bands::new(channel, valid, HALF, behind.period_s)).fit(&shape);
-            let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s).powi(2) * shape(hz);
+            let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s) * shape(hz);
             // at most what the slope makes of it: the gimbal follows the bearing and takes a part away
             let turns = Bands::new(channel, &turns, TENTH, behind.period_s);
             let turning_power = turns.fit_more(&|hz| own.power(hz, shape(hz)), &passed, most);

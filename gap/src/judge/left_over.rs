@@ -1,10 +1,10 @@
 //! What a fit leaves: excess of the whitened residual over noise, where it stands out most.
 //!
 //! ```text
-//! z = sum (p - 1) n / sqrt(2 sum n)        p the power of a cell, n its degrees of freedom
+//! z = sum (p - 1) n / sqrt(2 N + (N / 10)^2)        p the power of a cell, n its degrees of freedom, N = sum n
 //! ```
 //!
-//! Cells are bands of frequency, over the whole log and in windows of it; each channel by itself.
+//! The second part of the root is what the noise itself is known to. Cells are bands of frequency, over the whole log and in windows of it; each channel by itself.
 
 use realfft::RealFftPlanner;
 
@@ -14,6 +14,8 @@ use crate::fit::Problem;
 const WINDOW: usize = 2048;
 /// Edges of the bands [Hz].
 const EDGES_HZ: [f64; 8] = [0.0, 1.0, 2.5, 6.0, 15.0, 40.0, 110.0, 300.0];
+/// Share to which the power of the noise is known.
+const KNOWN_TO: f64 = 0.1;
 /// Standard deviations that the largest of the windows exceeds by chance.
 const BY_CHANCE: f64 = 4.0;
 
@@ -55,9 +57,14 @@ fn excess(series: &[f64], valid: &[bool], period_s: f64) -> f64 {
             let above = 2.0 * power - n;
             sums[band] += above;
             counts[band] += n;
-            local = local.max(above / (2.0 * n).max(1.0).sqrt());
+            local = local.max(above / scatter(n));
         }
     }
-    let whole = sums.iter().zip(&counts).map(|(sum, count)| sum / (2.0 * count).max(1.0).sqrt()).fold(0.0, f64::max);
+    let whole = sums.iter().zip(&counts).map(|(sum, count)| sum / scatter(*count)).fold(0.0, f64::max);
     whole.max(local - BY_CHANCE)
+}
+
+/// Of the excess of a cell with so many degrees of freedom.
+fn scatter(count: f64) -> f64 {
+    (2.0 * count + (KNOWN_TO * count).powi(2)).max(1.0).sqrt()
 }

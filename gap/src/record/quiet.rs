@@ -19,8 +19,6 @@ use crate::simulate::{Begin, Inputs, Physics, predict};
 
 /// Rows of a segment in which the spectrum is taken.
 const SEGMENT: usize = 2048;
-/// What is held to be noise at a frequency, over the noise: spectra scatter.
-const SURELY: f64 = 1.5;
 /// A row whose filtered rate is off by more standard deviations keeps its own: a step, no noise.
 const STEP: f64 = 4.0;
 /// Rows around a step that keep theirs too.
@@ -144,7 +142,7 @@ fn pass(values: &[f64], noise: f64) -> Vec<f64> {
             }
             let around = &spectrum[line.saturating_sub(2)..=(line + 2).min(last)];
             let mean = around.iter().sum::<f64>() / around.len() as f64 / segments;
-            (1.0 - SURELY * noise * noise / mean).max(0.0)
+            (1.0 - noise * noise / mean).max(0.0)
         })
         .collect()
 }
