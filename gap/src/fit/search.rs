@@ -66,10 +66,7 @@ pub fn search(problem: &mut Problem) -> Search {
         sort(problem, &mut fits);
     }
     // what is close to the best is brought to its end before it is judged
-    let temper = temper(problem, &fits);
-    let best = fits.first().map_or(0.0, |fit| fit.evidence(temper));
-    let close = fits.iter().take(POLISHED).filter(|fit| best - fit.evidence(temper) < CLOSE).count();
-    let last: Vec<Fit> = fits.drain(..close).collect();
+    let last: Vec<Fit> = fits.drain(..fits.len().min(POLISHED)).collect();
     let last: Vec<Fit> = last.into_par_iter().map(|fit| polish(problem, fit)).collect();
     fits.splice(0..0, last);
     sort(problem, &mut fits);
@@ -124,9 +121,7 @@ fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
 }
 
 /// Hypotheses that are fitted until nothing moves any more.
-const POLISHED: usize = 4;
-/// How far behind the best a hypothesis may be for that [nats].
-const CLOSE: f64 = 60.0;
+const POLISHED: usize = 5;
 
 /// Fits on from where a fit ended, with sensitivities of its own, until it stands still.
 fn polish(problem: &Problem, fit: Fit) -> Fit {

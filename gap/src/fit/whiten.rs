@@ -24,9 +24,6 @@ const SEGMENT: usize = 4096;
 /// Bands in which power is taken, and steps of the fit.
 const BANDS: usize = 36;
 const STEPS: usize = 120;
-/// Share of a segment that has to count.
-const HALF: f64 = 0.5;
-const TENTH: f64 = 0.1;
 /// Least power of noise, over the white noise that the samples themselves show.
 const LEAST_POWER: f64 = 1e-3;
 /// Corners that are tried [Hz].
@@ -104,13 +101,13 @@ impl Whitener {
             let response: Vec<f64> = plans.lines(impulse).iter().map(Complex::norm_sqr).collect();
             let shape = |hz: f64| at(&response, hz / step_hz);
             // where hardly anything else is, the rows that turn around show their noise themselves
-            let aside = Some(Bands::new(channel, &quiet, HALF, behind.period_s));
+            let aside = Some(Bands::new(channel, &quiet, Of::Most, behind.period_s));
             let aside = aside.filter(|bands| enough(&quiet) && bands.any());
             let most = if aside.is_some() { behind.turning_noise.powi(2) } else { 0.0 };
-            let own = aside.unwrap_or_else(|| Bands::new(channel, valid, HALF, behind.period_s)).fit(&shape);
+            let own = aside.unwrap_or_else(|| Bands::new(channel, valid, Of::Most, behind.period_s)).fit(&shape);
             let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s) * shape(hz);
             // at most what the slope makes of it: the gimbal follows the bearing and takes a part away
-            let turns = Bands::new(channel, &turns, TENTH, behind.period_s);
+            let turns = Bands::new(channel, &turns, Of::All, behind.period_s);
             let turning_power = turns.fit_more(&|hz| own.power(hz, shape(hz)), &passed, most);
             let gain = |more: f64| -> Vec<f64> {
                 let of = |line: usize| {
@@ -206,6 +203,15 @@ fn low(hz: f64, corner_hz: f64) -> f64 {
     1.0 / (1.0 + (hz / corner_hz) * (hz / corner_hz))
 }
 
+/// What power is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    /// The median of segments that count for half at least: what happens now and then is no noise.
+    Most,
+    /// The mean of segments that count for a tenth at least: noise that comes in bursts.
+    All,
+}
+
 /// Measured power in bands.
 struct Bands {
     hz: Vec<f64>,
@@ -216,18 +222,19 @@ struct Bands {
 
 impl Bands {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
-    fn new(values: &[f64], valid: &[bool], least: f64, period_s: f64) -> Self {
+    fn new(values: &[f64], valid: &[bool], of: Of, period_s: f64) -> Self {
         let length = SEGMENT.min(values.len());
         let plans = Plans::new(length);
         let window: Vec<f64> =
             (0..length).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / length as f64).cos()).collect();
+        let least = if of == Of::Most { 0.5 } else { 0.1 };
         let mut segments: Vec<Vec<f64>> = Vec::new();
         for start in (0..=values.len() - length).step_by((length / 2).max(1)) {
-            let of = |k: usize| if valid[start + k] { values[start + k] * window[k] } else { 0.0 };
+            let sample = |k: usize| if valid[start + k] { values[start + k] * window[k] } else { 0.0 };
             let gain: f64 = (0..length).filter(|&k| valid[start + k]).map(|k| window[k] * window[k]).sum();
             let all: f64 = window.iter().map(|value| value * value).sum();
             if gain > least * all {
-                let tapered: Vec<f64> = (0..length).map(of).collect();
+                let tapered: Vec<f64> = (0..length).map(sample).collect();
                 segments.push(plans.lines(&tapered).iter().map(|line| line.norm_sqr() / gain).collect());
             }
         }
@@ -248,7 +255,10 @@ impl Bands {
             let n = 2.0 * (to - from) as f64 * length as f64 / plans.length as f64;
             let median = (1.0 - 2.0 / (9.0 * n.max(1.0))).powi(3);
             bands.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
-            bands.power.push(means[means.len() / 2] / median);
+            bands.power.push(match of {
+                Of::Most => means[means.len() / 2] / median,
+                Of::All => means.iter().sum::<f64>() / means.len() as f64,
+            });
             bands.weight.push(n * segments.len() as f64);
         }
         bands

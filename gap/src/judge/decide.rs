@@ -11,6 +11,8 @@ use crate::record::Signal;
 /// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
 const COST: f64 = 14.0;
 const COST_OF_SHIFT: f64 = 6.0;
+/// The same for a parameter at the end of its range [nats].
+const BOUND_HIT: f64 = 20.0;
 /// A nominal parameter is an effect from this many tolerances on.
 const BEYOND: f64 = 1.15;
 /// Share of the best fit's excess put down to the formulation.
@@ -19,7 +21,7 @@ const FORMULATION: f64 = 0.01;
 const SCALE: f64 = 2.0;
 const SCALE_SHARE: f64 = 1e-5;
 /// Standard deviations that what is left may stand out by, and the spread of that limit.
-const LEFT_OVER: f64 = 11.0;
+const LEFT_OVER: f64 = 14.0;
 const LEFT_OVER_SCALE: f64 = 2.0;
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
@@ -114,7 +116,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
                 score -= 1e3;
             }
             if candidate.releases.is_empty() {
-                score -= COST;
+                score -= COST + at_a_bound(candidate.effect, &fit.values[place]);
             } else {
                 score -= COST_OF_SHIFT;
                 if !beyond(problem, tolerance, candidate.effect, &fit.values[place], &fit.errors[place]) {
@@ -224,6 +226,16 @@ pub(crate) fn names(problem: &Problem, fit: &Fit) -> Vec<&'static str> {
 
 fn contains(larger: &[&str], smaller: &[&str]) -> bool {
     smaller.iter().all(|name| larger.contains(name))
+}
+
+/// What a shape at the end of its realistic range costs: a cable's loop as long as the motion is a spring.
+fn at_a_bound(effect: &str, values: &[f64]) -> f64 {
+    let Some(effect) = Effect::from_name(effect) else { return 0.0 };
+    let shapes = effect.parameters().iter().zip(values).skip(effect.sizes());
+    let outside = |(parameter, value): (&gimbal_plant::Parameter, &f64)| {
+        parameter.bound != gimbal_plant::Bound::Any && !(parameter.low..=parameter.high).contains(value)
+    };
+    if shapes.into_iter().any(outside) { BOUND_HIT } else { 0.0 }
 }
 
 /// Whether a nominal parameter is beyond its tolerance by more than its own error.

@@ -20,8 +20,8 @@ const SHORTEST_S: f64 = 6.0;
 /// Least rms change of the vehicle rate [rad/s] and of the acceleration [m/s2] that excite anything.
 const LEAST_RATE_RADPS: f64 = 1.5e-3;
 const LEAST_ACCEL_MPS2: f64 = 0.1;
-/// Share of the nominal stop from which on the float may have touched it.
-const NEAR_STOP: f64 = 0.95;
+/// Shares of the nominal stop between which the float may have touched it.
+const NEAR_STOP: [f64; 2] = [0.95, 1.05];
 /// Share of its largest excursion within which the pick-off counts as on the stop.
 const PLATEAU_SHARE: f64 = 4e-3;
 
@@ -167,8 +167,8 @@ impl Record {
         self.plateau_rad = level.get(level.len() / 2).copied();
         if level.is_empty() {
             // a touch too short to be seen, wherever the stop is within its tolerance
-            let near = NEAR_STOP * config.gyro.stop_angle_rad;
-            if peak < near {
+            let [near, beyond] = NEAR_STOP.map(|share| share * config.gyro.stop_angle_rad);
+            if peak < near || peak > beyond {
                 return;
             }
             level = theta.values.iter().map(|value| value.abs()).filter(|value| *value > near).collect();

@@ -23,7 +23,7 @@ const SEGMENT: usize = 2048;
 const STEP: f64 = 4.0;
 /// Rows around a step that keep theirs too.
 const AROUND: usize = 20;
-/// The misfit from row to row that the filter has to bring, as a share of that without it.
+/// Share of an output's misfit from row to row that the filter may leave.
 const BETTER: f64 = 0.995;
 /// Rows over which the misfit is compared.
 const APART: usize = 12;
