@@ -129,11 +129,11 @@ fn contract_gaps_repeats_and_missing_samples_are_mended_and_told() {
     let run = bench.json(&["run", "log.csv", "--json"]);
     assert_eq!(run["samples"], 2000);
     let notes = run["notes"].to_string();
-    assert!(notes.contains("1 gaps (3 samples), the longest 0.0040 s after 0.499 s"), "{notes}");
-    assert!(notes.contains("1 repeated time stamps"), "{notes}");
+    assert!(notes.contains("1 gap (3 samples), the longest 0.0040 s after 0.499 s"), "{notes}");
+    assert!(notes.contains("1 repeated time stamp"), "{notes}");
     assert!(notes.contains("3 missing rows: filled in along straight lines"), "{notes}");
-    assert!(notes.contains("1 rows less than half a period behind another: left out"), "{notes}");
-    assert!(notes.contains("1 missing samples: taken as the last one known"), "{notes}");
+    assert!(notes.contains("1 row less than half a period behind another: left out"), "{notes}");
+    assert!(notes.contains("1 missing sample: taken as the last one known"), "{notes}");
     bench.write("whole.csv", whole);
     let exact = bench.json(&["run", "whole.csv", "--json"]);
     let (mended, exact) = (number(&run, "velocity_error_mps"), number(&exact, "velocity_error_mps"));
