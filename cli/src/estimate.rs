@@ -112,17 +112,7 @@ fn refused(args: &Args, error: &BuildError) -> Failure {
 
 /// The sensors as the log shows them, the tolerances of the model file.
 fn settings(tolerance: &Tolerance, angles: &[f64], motor_torque_measured: bool) -> estimator::Config {
-    let mut settings = estimator::Config {
-        tolerance: estimator::Tolerance {
-            damping: tolerance.gyro_damping,
-            float_inertia: tolerance.default_relative,
-            angular_momentum: tolerance.angular_momentum,
-            gimbal_inertia: tolerance.gimbal_inertia,
-            stop_angle: tolerance.stop_angle,
-            friction_level: tolerance.friction_level,
-        },
-        ..estimator::Config::default()
-    };
+    let mut settings = estimator::Config { tolerance: tolerance.estimator(), ..estimator::Config::default() };
     settings.sensors.motor_torque_measured = motor_torque_measured;
     // A log without noise repeats values for good reasons.
     let equal = angles.windows(2).filter(|pair| pair[0].to_bits() == pair[1].to_bits()).count();

@@ -49,47 +49,52 @@ pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
         Some(path) => ModelFile::open(path).map_err(|error| Failure::Input(error.into()))?,
     };
     let model_name = args.model.as_deref().map_or_else(|| "consistent".to_owned(), |path| path.display().to_string());
-    let mut texts = Vec::new();
-    let mut reports: Vec<Value> = Vec::new();
-    for path in &args.logs {
-        let log = Log::open(path, Needs::Diagnosis)?;
-        let diagnosis = gimbal_gap::diagnose(&log, &model);
-        let name = path.display().to_string();
-        let json = told::json(&diagnosis, &name, &model_name);
-        if let Some(out) = &args.out {
-            let folder =
-                if args.logs.len() == 1 { out.clone() } else { out.join(path.file_stem().unwrap_or_default()) };
-            std::fs::create_dir_all(&folder).map_err(Failure::write(&folder))?;
-            write(&folder.join("gap.json"), &format!("{json:#}\n"))?;
-            write(&folder.join("gap.html"), &told::html(&diagnosis, &name))?;
-        }
-        let text = told::text(&diagnosis);
-        texts.push(if args.logs.len() == 1 { text } else { format!("{name}\n{text}") });
-        reports.push(json);
-    }
-    let json = if reports.len() == 1 { reports.remove(0) } else { Value::Array(reports) };
-    report::print(&texts.join("\n\n"), args.json.then_some(&json))
+    reported(args, |path, name| {
+        let diagnosis = gimbal_gap::diagnose(&Log::open(path, Needs::Diagnosis)?, &model);
+        Ok(Told {
+            json: told::json(&diagnosis, name, &model_name),
+            page: told::html(&diagnosis, name),
+            text: told::text(&diagnosis),
+        })
+    })
 }
 
 /// Diagnoses a plain axis, one without a gyro.
 fn bare_axis(args: &Args, model: &AxisModel, model_name: &str) -> Result<(), Failure> {
     let open = |path: &PathBuf| AxisLog::open(path, model).map_err(|error| Failure::Input(error.into()));
+    reported(args, |path, name| {
+        let unseen = args.unseen.iter().map(|path| Ok((path.display().to_string(), open(path)?)));
+        let diagnosis = axis::diagnose(open(path)?, model, unseen.collect::<Result<_, Failure>>()?);
+        Ok(Told {
+            json: axis::json(&diagnosis, name, model_name),
+            page: axis::html(&diagnosis, name),
+            text: axis::text(&diagnosis),
+        })
+    })
+}
+
+/// What is told of one log.
+struct Told {
+    json: Value,
+    page: String,
+    text: String,
+}
+
+/// Log after log, by its path and name; reports written as they come, told at the end.
+fn reported(args: &Args, diagnosed: impl Fn(&PathBuf, &str) -> Result<Told, Failure>) -> Result<(), Failure> {
     let mut texts = Vec::new();
     let mut reports: Vec<Value> = Vec::new();
     for path in &args.logs {
         interrupt::check()?;
-        let unseen = args.unseen.iter().map(|path| Ok((path.display().to_string(), open(path)?)));
-        let diagnosis = axis::diagnose(open(path)?, model, unseen.collect::<Result<_, Failure>>()?);
         let name = path.display().to_string();
-        let json = axis::json(&diagnosis, &name, model_name);
+        let Told { json, page, text } = diagnosed(path, &name)?;
         if let Some(out) = &args.out {
             let folder =
                 if args.logs.len() == 1 { out.clone() } else { out.join(path.file_stem().unwrap_or_default()) };
             std::fs::create_dir_all(&folder).map_err(Failure::write(&folder))?;
             write(&folder.join("gap.json"), &format!("{json:#}\n"))?;
-            write(&folder.join("gap.html"), &axis::html(&diagnosis, &name))?;
+            write(&folder.join("gap.html"), &page)?;
         }
-        let text = axis::text(&diagnosis);
         texts.push(if args.logs.len() == 1 { text } else { format!("{name}\n{text}") });
         reports.push(json);
     }

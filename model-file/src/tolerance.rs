@@ -1,5 +1,6 @@
 //! How well the nominal parameters are known: the `[tolerance]` table.
 
+use gimbal_servo::estimator;
 use serde::{Deserialize, Serialize};
 
 /// Relative standard uncertainty of each nominal parameter, by the name of the effect that shifts it.
@@ -71,6 +72,19 @@ impl Tolerance {
             ("pickoff_scale", self.pickoff_scale),
             ("torque_scale", self.torque_scale),
         ]
+    }
+
+    /// What the onboard estimator is told of it.
+    #[must_use]
+    pub fn estimator(&self) -> estimator::Tolerance {
+        estimator::Tolerance {
+            damping: self.gyro_damping,
+            float_inertia: self.default_relative,
+            angular_momentum: self.angular_momentum,
+            gimbal_inertia: self.gimbal_inertia,
+            stop_angle: self.stop_angle,
+            friction_level: self.friction_level,
+        }
     }
 
     /// The tolerance of the parameter that an effect shifts; the default where the table has no such name.

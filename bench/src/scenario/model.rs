@@ -26,18 +26,7 @@ impl Scenario {
                 Part::Unbalance => config.without_unbalance(),
             };
         }
-        let tolerance = &model.tolerance;
-        let mut settings = estimator::Config {
-            tolerance: estimator::Tolerance {
-                damping: tolerance.gyro_damping,
-                float_inertia: tolerance.default_relative,
-                angular_momentum: tolerance.angular_momentum,
-                gimbal_inertia: tolerance.gimbal_inertia,
-                stop_angle: tolerance.stop_angle,
-                friction_level: tolerance.friction_level,
-            },
-            ..estimator::Config::default()
-        };
+        let mut settings = estimator::Config { tolerance: model.tolerance.estimator(), ..estimator::Config::default() };
         settings.sensors.gyro_noise_rad = self.noise.gyro_angle_rad.max(1e-9);
         settings.sensors.gyro_step_rad = self.noise.gyro_step_rad;
         settings.sensors.motor_torque_noise_nm = self.noise.motor_torque_nm;

@@ -8,7 +8,7 @@ mod search;
 mod whiten;
 
 pub use normal::Solution;
-pub(crate) use normal::{products, slices, solve};
+pub(crate) use normal::{drive, slices, solve};
 pub use problem::{BLOCKS, Columns, Problem};
 pub(crate) use problem::{predicted, residual as raw_residual};
 pub use refine::{Fit, refine, refit, without};

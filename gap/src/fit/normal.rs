@@ -41,6 +41,11 @@ pub(crate) fn products(a: &[&[f64]], b: &[&[f64]], rows: Range<usize>) -> DMatri
     parts.into_iter().fold(zero(), |sum, part| sum + part)
 }
 
+/// Products of columns with one series.
+pub(crate) fn drive(columns: &[&[f64]], series: &[f64]) -> DVector<f64> {
+    products(columns, &[series], 0..series.len()).column(0).into_owned()
+}
+
 fn samples(columns: &[&[f64]], rows: Range<usize>) -> impl Iterator<Item = f64> {
     columns.iter().flat_map(move |column| column[rows.clone()].iter().copied())
 }

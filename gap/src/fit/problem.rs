@@ -82,9 +82,7 @@ impl<'a> Problem<'a> {
         let reached = record.channel(Signal::GyroAngle).map_or(0.0, |channel| peak(&channel.values));
         base.config.gyro.stop_angle_rad =
             record.plateau_rad.unwrap_or(base.config.gyro.stop_angle_rad.max(1.2 * reached));
-        let first = |signal| record.channel(signal).filter(|c| c.valid[0]).map(|c| c.values[0]);
-        let torque = first(Signal::MotorTorque);
-        let begin = Begin::at(&base, &record.inputs, first(Signal::GyroAngle).unwrap_or(0.0), torque);
+        let begin = record.begin(&base, &record.inputs);
         let nominal = predict(&base, &record.inputs, &begin, record.rows());
         let raw = residual(record, &nominal);
         let noise: Vec<f64> =

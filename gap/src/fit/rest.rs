@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::normal::{products, slices, solve};
+use super::normal::{drive, products, slices, solve};
 use super::problem::{Columns, Signals};
 
 /// Every so many rows are fitted.
@@ -35,7 +35,7 @@ pub(crate) fn rest(raw: &Raw, target: &Signals) -> Signals {
     let thinned: Vec<Vec<f64>> = raw.columns.par_iter().map(thin).collect();
     let (columns, right) = (slices(&thinned), thin(target));
     let gram = products(&columns, &columns, 0..right.len());
-    let drive = products(&columns, &[&right], 0..right.len()).column(0).into_owned();
+    let drive = drive(&columns, &right);
     let (chosen, coefficients) = greedy(raw, &gram, &drive);
     let channel = |index: usize| -> Vec<f64> {
         let mut rest = target[index].clone();

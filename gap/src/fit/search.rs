@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::normal::{products, slices, solve};
+use super::normal::{drive, slices, solve};
 use super::refine::{Pull, rebase};
 use super::{Fit, Problem, refine};
 use crate::record::{Record, Signal};
@@ -172,7 +172,7 @@ struct Extension {
 /// Every candidate more, at a fit.
 fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
     let columns = slices(&problem.whitened);
-    let mut drive = products(&columns, &[&fit.residual], 0..fit.residual.len()).column(0).into_owned();
+    let mut drive = drive(&columns, &fit.residual);
     // priors pull the shifts that the fit has already
     let (chosen, mut precision) = problem.chosen(&fit.set.0);
     let begin = problem.columns.begin;

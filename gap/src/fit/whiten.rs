@@ -17,7 +17,7 @@ use std::sync::Arc;
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
-use crate::record::RateNoise;
+use crate::record::{RateNoise, between};
 
 /// Rows of a segment.
 const SEGMENT: usize = 4096;
@@ -99,7 +99,7 @@ impl Whitener {
         let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
         for (channel, impulse) in residual.iter().zip(behind.impulse) {
             let response: Vec<f64> = plans.lines(impulse).iter().map(Complex::norm_sqr).collect();
-            let shape = |hz: f64| at(&response, hz / step_hz);
+            let shape = |hz: f64| between(&response, hz / step_hz);
             // where hardly anything else is, the rows that turn around show their noise themselves
             let aside = Some(Bands::new(channel, &quiet, Of::Most, behind.period_s));
             let aside = aside.filter(|bands| enough(&quiet) && bands.any());
@@ -332,12 +332,4 @@ impl Bands {
 
 fn enough(valid: &[bool]) -> bool {
     4 * valid.iter().filter(|valid| **valid).count() > valid.len()
-}
-
-/// A value between two lines.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
-fn at(values: &[f64], place: f64) -> f64 {
-    let low = (place as usize).min(values.len() - 1);
-    let high = (low + 1).min(values.len() - 1);
-    values[low] + (place - low as f64) * (values[high] - values[low])
 }

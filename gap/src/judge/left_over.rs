@@ -4,7 +4,8 @@
 //! z = sum (p - 1) n / sqrt(2 N + (N / 10)^2)        p the power of a cell, n its degrees of freedom, N = sum n
 //! ```
 //!
-//! The second part of the root is what the noise itself is known to. Cells are bands of frequency, over the whole log and in windows of it; each channel by itself.
+//! The second part of the root is what the noise itself is known to. Cells are bands of frequency, over the whole log
+//! and in windows of it; each channel by itself.
 
 use realfft::RealFftPlanner;
 

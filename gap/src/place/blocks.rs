@@ -2,7 +2,7 @@
 
 use gimbal_plant::{Block, Effect};
 
-use crate::fit::{Problem, products, slices, solve};
+use crate::fit::{Problem, drive, slices, solve};
 
 /// The blocks in the order of the report.
 const BLOCKS: [Block; 6] =
@@ -17,7 +17,7 @@ pub fn shares(problem: &Problem, residual: &[f64]) -> Vec<(String, f64)> {
             .collect()
     };
     let members: Vec<Vec<usize>> = BLOCKS.iter().map(|block| in_block(*block)).collect();
-    let drive = products(&slices(&problem.whitened), &[residual], 0..residual.len()).column(0).into_owned();
+    let drive = drive(&slices(&problem.whitened), residual);
     let gain: Vec<f64> = (0..1 << BLOCKS.len())
         .map(|subset: usize| {
             let set: Vec<usize> =

@@ -9,10 +9,11 @@ mod stuck;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
-use crate::simulate::Inputs;
+use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
 pub use faults::faults;
 pub use quiet::RateNoise;
+pub(crate) use quiet::between;
 pub(crate) use rough::rough;
 
 /// Shortest log that a diagnosis is made from [s].
@@ -122,6 +123,13 @@ impl Record {
     #[must_use]
     pub fn channel(&self, signal: Signal) -> Option<&Channel> {
         self.channels.iter().find(|channel| channel.signal == signal)
+    }
+
+    /// Where a platform begins that reads as the first row does.
+    #[must_use]
+    pub fn begin(&self, physics: &Physics, inputs: &Inputs) -> Begin {
+        let first = |signal| self.channel(signal).filter(|channel| channel.valid[0]).map(|channel| channel.values[0]);
+        Begin::at(physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque))
     }
 
     fn look_at_excitation(&mut self, length_s: f64) {

@@ -13,9 +13,9 @@
 use gimbal_servo::Config;
 use realfft::RealFftPlanner;
 
+use super::Record;
 use super::rough::rough;
-use super::{Record, Signal};
-use crate::simulate::{Begin, Inputs, Physics, predict};
+use crate::simulate::{Inputs, Physics, predict};
 
 /// Rows of a segment in which the spectrum is taken.
 const SEGMENT: usize = 2048;
@@ -45,9 +45,7 @@ impl Record {
     /// What changes between rows that stand `APART` in the nominal misfit of each output.
     fn misfit(&self, config: &Config, inputs: &Inputs) -> Vec<f64> {
         let physics = Physics::nominal(config);
-        let first = |signal| self.channel(signal).filter(|channel| channel.valid[0]).map(|channel| channel.values[0]);
-        let begin = Begin::at(&physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque));
-        let prediction = predict(&physics, inputs, &begin, usize::MAX);
+        let prediction = predict(&physics, inputs, &self.begin(&physics, inputs), usize::MAX);
         let of = |channel: &super::Channel| {
             let predicted = crate::fit::predicted(channel.signal, &prediction);
             let off = |k: usize| channel.values[k] - predicted[k];
@@ -147,8 +145,9 @@ fn pass(values: &[f64], noise: f64) -> Vec<f64> {
         .collect()
 }
 
+/// A value between two lines.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
-fn between(values: &[f64], place: f64) -> f64 {
+pub(crate) fn between(values: &[f64], place: f64) -> f64 {
     let low = (place as usize).min(values.len() - 1);
     let high = (low + 1).min(values.len() - 1);
     values[low] + (place - low as f64) * (values[high] - values[low])
