@@ -19,10 +19,19 @@ pub(crate) fn target_dir() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
-/// The cargo that started this program.
+/// Space left on the disk that cargo builds on, in gigabytes; none where `df` does not tell.
+pub(crate) fn free_disk_gb() -> Option<f64> {
+    let existing = target_dir().ancestors().find(|folder| folder.exists())?.to_owned();
+    let output = program("df").args(["-P", "-k"]).arg(existing).output().ok()?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let kilobytes: f64 = text.lines().nth(1)?.split_whitespace().nth(3)?.parse().ok()?;
+    Some(kilobytes * 1024.0 / 1e9)
+}
+
+/// The cargo that started this program, without its incremental cache: a check builds once, and the cache fills disks.
 pub(crate) fn cargo(words: &str) -> Command {
     let mut command = program(&std::env::var("CARGO").unwrap_or_else(|_| "cargo".into()));
-    command.args(words.split_whitespace());
+    command.args(words.split_whitespace()).env("CARGO_INCREMENTAL", "0");
     command
 }
 

@@ -2,13 +2,16 @@
 //!
 //! A failed stage does not stop the later ones: one run shows everything that is wrong.
 
-use crate::{board, host};
+use crate::{board, host, shell};
 use anyhow::Result;
 use std::fmt;
 use std::time::{Duration, Instant};
 
 /// What a passed stage has to say in the table: a count, a figure, or nothing.
 pub(crate) type Note = String;
+
+/// What all stages together leave on the disk, from nothing, rounded up.
+const DISK_GB: f64 = 8.0;
 
 /// One stage: its name, and what it does.
 struct Stage {
@@ -79,6 +82,13 @@ impl Stages {
     /// Runs them all; the exit status.
     pub(crate) fn run(&self) -> u8 {
         let start = Instant::now();
+        let free_gb = shell::free_disk_gb();
+        if self.0.len() > 1 && free_gb.is_some_and(|free| free < DISK_GB) {
+            println!(
+                "only {:.1} GB of disk are free: all stages together leave about {DISK_GB} GB",
+                free_gb.unwrap_or_default()
+            );
+        }
         let mut rows = Vec::new();
         for (index, stage) in self.0.iter().enumerate() {
             println!("\n=== {}/{} {} ===", index + 1, self.0.len(), stage.name);
@@ -90,6 +100,9 @@ impl Stages {
                 Err(error) => println!("--- {}: FAILED after {:.1} s\n{error:#}", stage.name, time.as_secs_f64()),
             }
             rows.push((stage.name, time, outcome));
+        }
+        if let (Some(before), Some(after)) = (free_gb, shell::free_disk_gb()) {
+            println!("\ndisk: {before:.1} GB were free, {after:.1} GB are");
         }
         summary(&rows, start.elapsed())
     }
