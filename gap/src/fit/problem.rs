@@ -15,7 +15,10 @@ use crate::simulate::{Begin, Physics, Prediction, predict};
 /// Time blocks.
 pub const BLOCKS: usize = 10;
 /// Places of the beginning that are unknown, and their standard deviations.
-const STATE_SIGMA: [f64; 10] = [0.02, 2e-4, 0.1, 0.3, 0.3, 0.3, 0.3, 1e-2, 1e-2, 1.0];
+const STATE_SIGMA: [f64; 10] = [0.02, 2e-4, 0.1, 0.1, 3.0, 3.0, 3.0, 1e-2, 1e-2, 1.0];
+/// Place of the slow section, and what tolerances leave open of its lead over its lag.
+const SLOW_SECTION: usize = 3;
+const SLOW_UNKNOWN: f64 = 0.05;
 /// Steps in which sensitivities to the beginning are taken, over those: inside the friction's clamp, off the stops.
 pub(crate) const STATE_STEP: f64 = 1e-3;
 
@@ -210,7 +213,7 @@ impl Draft<'_> {
             (0..10).filter(|&state| state != 9 || self.record.channel(Signal::GimbalAngle).is_some()).collect();
         columns.begin = states.len();
         let mut all: Vec<Signals> = states.par_iter().map(|&state| self.begin_column(state)).collect();
-        sigma.extend(states.iter().map(|&state| STATE_SIGMA[state]));
+        sigma.extend(states.iter().map(|&state| self.state_sigma(state)));
         all.par_extend(nuisances.par_iter().map(|nuisance| {
             let mut physics = self.base.clone();
             nuisance.shift(&mut physics, nuisance.step);
@@ -226,8 +229,20 @@ impl Draft<'_> {
         (columns, all, sigma)
     }
 
+    /// How far a place of the beginning may be from where the log seems to begin. The slow section remembers what
+    /// the integrator took in, a step of the torque over its time constant, and shows the part of it that lead and
+    /// lag do not cancel.
+    fn state_sigma(&self, state: usize) -> f64 {
+        if state != SLOW_SECTION {
+            return STATE_SIGMA[state];
+        }
+        let servo = &self.base.config.servo;
+        let (lead_s, lag_s) = (servo.lead_time_constants_s[0], servo.lag_time_constants_s[0]);
+        2.0 * ((1.0 - lead_s / lag_s).abs() + SLOW_UNKNOWN) * peak(&self.nominal.motor_torque_nm) / lag_s
+    }
+
     fn begin_column(&self, state: usize) -> Signals {
-        let step = STATE_STEP * STATE_SIGMA[state];
+        let step = STATE_STEP * self.state_sigma(state);
         let mut begin = self.begin.clone();
         begin.state[state] += step;
         // it dies away

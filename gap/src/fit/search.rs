@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 
 use super::normal::{drive, slices, solve};
-use super::refine::{Pull, rebase};
+use super::pull::Pull;
+use super::refit::rebase;
 use super::{Fit, Problem, refine};
 use crate::record::{Record, Signal};
 use crate::simulate::Prediction;

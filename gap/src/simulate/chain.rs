@@ -4,6 +4,8 @@
 //! Jg phi''   = u - H theta' - T_m                         (1)      u all torques on the gimbal
 //! Jo theta'' = H phi' + v - Bo theta'                     (2)      v a torque on the float; on a stop theta' = 0
 //! T_m        = F(s) / (1 + T s) theta                     (3)      a cascade of first-order sections
+//! section    : out = r in + y     T y' = (1 - r) in - y            r lead over lag; y as it shows at the output, so
+//!                                                                  that where it begins does not multiply lead and lag
 //! delay d    : T_m = tau - d w'    w'' = 12/d^2 (tau - w) - 6/d w'   (Pade, order 2)
 //! appendage  : a = (2 pi f)^2 x + 2 z (2 pi f) x'   x = phi - q   Jg (1-r) phi'' = ... - r Jg a   q'' = a
 //! ```
@@ -64,10 +66,12 @@ impl Chain {
         signal[n] = servo.gain_nm_per_rad_s;
         for (index, lag_s) in servo.lag_time_constants_s.iter().enumerate() {
             let ratio = servo.lead_time_constants_s[index] / lag_s;
-            let mut drive = signal.clone();
+            let mut drive: Vec<f64> = signal.iter().map(|value| (1.0 - ratio) * value).collect();
             drive[SECTION + index] -= 1.0;
             self.set(SECTION + index, &drive, 1.0 / lag_s);
-            signal = drive.iter().map(|value| ratio * value).collect();
+            for value in &mut signal {
+                *value *= ratio;
+            }
             signal[SECTION + index] += 1.0;
         }
         self.set(INTEGRATOR, &signal, 1.0);

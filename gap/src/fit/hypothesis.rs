@@ -1,0 +1,209 @@
+//! A set of effects with everything that is fitted along with it, and the places at which it is tried.
+
+use gimbal_plant::{Bound, Effect};
+use nalgebra::DVector;
+
+use super::problem::{difference, residual};
+use super::pull::Pull;
+use super::{Problem, Set};
+use crate::library::{Nuisance, apply};
+use crate::simulate::{Begin, Physics, Prediction, predict};
+
+/// Step of a sensitivity to a value, in its logarithm or over its size.
+const STEP: f64 = 2e-3;
+/// Standard deviation of the logarithm of a parameter that is not a size.
+const SHAPE_SIGMA: f64 = 1.2;
+
+/// One try: values of the effects, shifts of the nominal parameters, the beginning.
+#[derive(Debug, Clone)]
+pub(crate) struct Point {
+    pub(crate) values: Vec<Vec<f64>>,
+    pub(crate) shifts: Vec<f64>,
+    /// From where the log seems to begin.
+    pub(crate) state: Vec<f64>,
+}
+
+/// What a try predicts.
+#[derive(Debug)]
+pub(crate) struct Outcome {
+    pub(crate) prediction: Prediction,
+    /// Whitened residual.
+    pub(crate) residual: Vec<f64>,
+    /// Its square.
+    pub(crate) square: f64,
+}
+
+/// One value that is fitted beside the nominal parameters.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Free {
+    pub(crate) effect: usize,
+    pub(crate) value: usize,
+    /// Fitted in its logarithm.
+    pub(crate) log: bool,
+    sigma: f64,
+    center: f64,
+}
+
+impl Free {
+    pub(crate) fn precision(&self) -> f64 {
+        1.0 / (self.sigma * self.sigma)
+    }
+
+    /// How far the value is from the middle of its prior.
+    pub(crate) fn off(&self, values: &[Vec<f64>]) -> f64 {
+        let value = values[self.effect][self.value];
+        (if self.log { value.ln() } else { value }) - self.center
+    }
+}
+
+/// A set, its free values, its priors.
+#[derive(Debug)]
+pub(crate) struct Hypothesis<'a> {
+    pub(crate) problem: &'a Problem<'a>,
+    pub(crate) set: &'a Set,
+    pub(crate) free: Vec<Free>,
+    /// Precisions of the beginning and the nominal parameters under the set.
+    pub(crate) precision: Vec<f64>,
+    /// How far the nominal parameters may go.
+    pub(crate) limits: Vec<f64>,
+}
+
+impl<'a> Hypothesis<'a> {
+    /// Its free values, and their priors around `start`.
+    pub(crate) fn new(problem: &'a Problem, set: &'a Set, start: &[Vec<f64>]) -> Self {
+        let (_, mut precision) = problem.chosen(&set.0);
+        precision.truncate(problem.columns.begin + problem.columns.nuisances);
+        let limits = limits(problem, &precision);
+        Self { problem, set, free: free(problem, set, start), precision, limits }
+    }
+
+    /// Number of columns of the beginning and the nominal parameters.
+    pub(crate) fn fixed(&self) -> usize {
+        self.precision.len()
+    }
+
+    /// The platform at a point.
+    pub(crate) fn physics(&self, point: &Point) -> Physics {
+        let mut physics = self.problem.base.clone();
+        for (nuisance, shift) in self.problem.nuisances.iter().zip(&point.shifts) {
+            nuisance.shift(&mut physics, *shift);
+        }
+        for (&index, values) in self.set.0.iter().zip(&point.values) {
+            let candidate = &self.problem.candidates[index];
+            if candidate.releases.is_empty() {
+                apply(candidate.effect, values, &mut physics);
+            }
+        }
+        physics
+    }
+
+    /// Where the run begins at a point.
+    pub(crate) fn begin(&self, point: &Point) -> Begin {
+        let mut begin = self.problem.begin.clone();
+        for (place, shift) in begin.state.iter_mut().zip(&point.state) {
+            *place += shift;
+        }
+        begin
+    }
+
+    /// Some rows of the prediction at a point.
+    pub(crate) fn predict(&self, point: &Point, rows: usize) -> Prediction {
+        predict(&self.physics(point), &self.problem.record.inputs, &self.begin(point), rows)
+    }
+
+    /// Prediction and whitened residual at a point.
+    pub(crate) fn evaluate(&self, point: &Point) -> Outcome {
+        let prediction = self.predict(point, usize::MAX);
+        let residual = self.problem.whiten(residual(self.problem.record, &prediction));
+        let square = residual.iter().map(|value| value * value).sum();
+        Outcome { prediction, residual, square }
+    }
+
+    /// What the prediction changes by from a point to a moved one, whitened, over the step.
+    pub(crate) fn slope(&self, moved: &Point, now: &Prediction, step: f64, rows: usize) -> Vec<f64> {
+        let prediction = self.predict(moved, rows);
+        self.problem.whiten(difference(self.problem.record, &prediction, now, step))
+    }
+
+    /// Sensitivity to every free value.
+    pub(crate) fn sensitivities(&self, point: &Point, now: &Prediction) -> Vec<Vec<f64>> {
+        let of = |free: &Free| {
+            let mut moved = point.clone();
+            let value = &mut moved.values[free.effect][free.value];
+            let step = if free.log { STEP } else { STEP * value.abs().max(free.sigma) };
+            if free.log {
+                *value *= step.exp();
+            } else {
+                *value += step;
+            }
+            self.slope(&moved, now, step, usize::MAX)
+        };
+        self.free.iter().map(of).collect()
+    }
+
+    /// What the priors cost at a point.
+    pub(crate) fn cost(&self, point: &Point) -> f64 {
+        let begin: f64 =
+            point.state.iter().zip(&self.precision).map(|(value, precision)| value * value * precision).sum();
+        let values: f64 = self.free.iter().map(|free| free.off(&point.values).powi(2) * free.precision()).sum();
+        begin + Pull::new(self.problem, &self.precision, &point.shifts).cost + values
+    }
+
+    /// A point after a step of all columns.
+    pub(crate) fn moved(&self, point: &Point, step: &DVector<f64>) -> Point {
+        let mut next = point.clone();
+        let (begin, fixed) = (point.state.len(), self.fixed());
+        for (place, state) in next.state.iter_mut().enumerate() {
+            *state += step[place];
+        }
+        for ((place, shift), limit) in next.shifts.iter_mut().enumerate().zip(&self.limits) {
+            *shift = (*shift + step[begin + place]).clamp(-limit, *limit);
+        }
+        for (place, free) in self.free.iter().enumerate() {
+            let value = &mut next.values[free.effect][free.value];
+            let step = step[fixed + place];
+            if free.log {
+                *value *= step.clamp(-1.0, 1.0).exp();
+            } else {
+                *value += step;
+            }
+        }
+        next
+    }
+}
+
+/// The values that are fitted on their own.
+fn free(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Vec<Free> {
+    let mut all = Vec::new();
+    for (effect, &index) in set.0.iter().enumerate() {
+        let candidate = &problem.candidates[index];
+        let Some(entry) = Effect::from_name(candidate.effect).filter(|_| candidate.releases.is_empty()) else {
+            continue;
+        };
+        for (value, parameter) in entry.parameters().iter().enumerate() {
+            let log = parameter.bound != Bound::Any && start[effect][value] > 0.0;
+            let size = value < entry.sizes();
+            let own = start[effect][value];
+            let spread = 0.5 * parameter.low.abs().max(parameter.high.abs());
+            let (sigma, center) = if log {
+                (SHAPE_SIGMA, own.ln())
+            } else if size {
+                (spread.max(own.abs()), 0.0)
+            } else {
+                // cycles and phases move little from where they were found
+                (if parameter.unit == "rad" { 1.0 } else { 0.02 * own.abs().max(1.0) }, own)
+            };
+            all.push(Free { effect, value, log, sigma, center });
+        }
+    }
+    all
+}
+
+/// How far nominal parameters may go: little beyond their tolerance, or as far as a release lets them.
+fn limits(problem: &Problem, precision: &[f64]) -> Vec<f64> {
+    let released = |place: usize| 1.0 / precision[problem.columns.begin + place].sqrt();
+    let of = |(place, nuisance): (usize, &Nuisance)| {
+        if released(place) > 1.01 * nuisance.sigma { (6.0 * released(place)).min(0.8) } else { 4.0 * nuisance.sigma }
+    };
+    problem.nuisances.iter().enumerate().map(of).collect()
+}
