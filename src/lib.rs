@@ -36,6 +36,7 @@ mod build;
 mod config;
 mod crossing;
 mod digest;
+pub mod effects;
 mod error;
 pub mod estimator;
 mod faults;
