@@ -219,12 +219,6 @@ impl<N: Number> Law<N> {
         output
     }
 
-    /// The axis without what the sensors add, for its sums.
-    #[must_use]
-    pub fn axis_state<'a>(&self, state: &'a State<N>) -> &'a AxisState<N> {
-        &state.axis
-    }
-
     /// `T_e` at the row that comes.
     fn torque(&self, state: &mut State<N>, input: &Input<N>) -> N {
         let units = &self.axis.units;
@@ -290,5 +284,13 @@ impl<N: Number> Law<N> {
         let sum = N::confine(state.turned + term);
         state.lost = (sum - state.turned) - term;
         state.turned = sum;
+    }
+}
+
+impl<N: Number> State<N> {
+    /// The nominal law's state, for its sums.
+    #[must_use]
+    pub fn axis(&self) -> &AxisState<N> {
+        &self.axis
     }
 }

@@ -75,6 +75,7 @@ pub(crate) fn estimate(args: &Args) -> Result<(), Failure> {
         None => ModelFile::default(),
         Some(path) => ModelFile::open(path).map_err(|error| Failure::Input(error.into()))?,
     };
+    model.without_effects("`gimbal estimate`").map_err(|error| Failure::Input(error.into()))?;
     if let Some(path) = &args.plot {
         Failure::unless_other_file(&args.log, path)?;
     }

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use gimbal_gap::axis::{self, AxisLog};
+use gimbal_gap::close;
 use gimbal_gap::report as told;
 use gimbal_log::{AtomicFile, Log, Needs};
-use gimbal_model_file::{AxisModel, ModelFile};
+use gimbal_model_file::{AxisModel, ModelFile, known_good};
 use serde_json::Value;
 
 use crate::exit::Failure;
@@ -26,6 +27,12 @@ pub(crate) struct Args {
     /// Folder for gap.json and gap.html; with several logs, a folder in it for each
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Part that is known to be good, such as `torque_sensor`, or effect that is none: as `[known_good]` in the model file
+    #[arg(long, value_name = "PART", value_delimiter = ',')]
+    trust: Vec<String>,
+    /// Write the model with what was found in it
+    #[arg(long, value_name = "FILE.toml")]
+    write_model: Option<PathBuf>,
     /// Log that is not fitted: what the diagnosis of each LOG leaves of it is told (plain axes alone)
     #[arg(long, value_name = "LOG")]
     unseen: Vec<PathBuf>,
@@ -39,23 +46,48 @@ pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
     if let Some(path) = &args.model
         && let Some(model) = AxisModel::open(path).map_err(|error| Failure::Input(error.into()))?
     {
+        if !args.trust.is_empty() || args.write_model.is_some() {
+            return Err(Failure::input(
+                "--trust, --write-model: not for a plain axis, whose model file has no effects",
+            ));
+        }
         return bare_axis(args, &model, &path.display().to_string());
     }
     if !args.unseen.is_empty() {
         return Err(Failure::input("--unseen: needs the model of a plain axis, a file with the table [axis]"));
     }
-    let model = match &args.model {
+    let mut model = match &args.model {
         None => ModelFile::default(),
         Some(path) => ModelFile::open(path).map_err(|error| Failure::Input(error.into()))?,
     };
+    for name in &args.trust {
+        let part = known_good::part(name).map_err(|message| Failure::input(format!("--trust: {message}")))?;
+        model.known_good.push(part);
+    }
+    if let Some(written) = &args.write_model {
+        if args.logs.len() > 1 {
+            return Err(Failure::input("--write-model: takes one log"));
+        }
+        for read in args.logs.iter().chain(&args.model) {
+            Failure::unless_other_file(read, written)?;
+        }
+    }
+    let model = model;
     let model_name = args.model.as_deref().map_or_else(|| "consistent".to_owned(), |path| path.display().to_string());
     reported(args, |path, name| {
         let diagnosis = gimbal_gap::diagnose(&Log::open(path, Needs::Diagnosis)?, &model);
-        Ok(Told {
-            json: told::json(&diagnosis, name, &model_name),
-            page: told::html(&diagnosis, name),
-            text: told::text(&diagnosis),
-        })
+        let mut text = told::text(&diagnosis);
+        if let Some(written) = &args.write_model {
+            let remark = match close::corrected(&diagnosis, &model) {
+                Ok(corrected) => {
+                    self::write(written, &corrected)?;
+                    format!("\nwritten: {}", written.display())
+                }
+                Err(why) => format!("\nnot written: {}; {why}", written.display()),
+            };
+            text.push_str(&remark);
+        }
+        Ok(Told { json: told::json(&diagnosis, name, &model_name), page: told::html(&diagnosis, name), text })
     })
 }
 

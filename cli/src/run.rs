@@ -13,7 +13,8 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum};
-use gimbal_model_file::ModelFile;
+use gimbal_model_file::{ModelFile, effects};
+use gimbal_plant::EffectError;
 use gimbal_servo::{BuildError, Config, Fixed};
 use serde_json::{Value, json};
 
@@ -151,6 +152,7 @@ fn run_log(path: &Path, model: &ModelFile, options: &Options) -> Result<Summary,
     let source = Source::open(path, options.out.is_some())?;
     let config = Config { period_s: source.period_s, ..model.config };
     let mut notes = source.remarks.clone();
+    notes.extend(left_out(model, options));
     let mut files = Files::create(options, None, Some(&source))?;
     let finished = with_model(options, &config, model, |runs| drive::log(runs, &source, &mut files))?;
     notes.extend(told(&source.finish()));
@@ -168,15 +170,29 @@ fn with_model(
 ) -> Result<Finished, Failure> {
     let refused = |error: BuildError| Failure::Input(file.locate(&error).into());
     let initial = options.initial;
+    let (flown, _) = effects::flown(&file.effects);
     match options.kind() {
-        Kind::Float => run(&mut Flight::<f32>::new(config, initial).map_err(refused)?),
-        Kind::Fixed => run(&mut Flight::<Fixed>::new(config, initial).map_err(refused)?),
-        Kind::Plant => run(&mut Reference::new(config, initial).map_err(refused)?),
+        Kind::Float => run(&mut Flight::<f32>::with_effects(config, &flown, initial).map_err(refused)?),
+        Kind::Fixed => run(&mut Flight::<Fixed>::with_effects(config, &flown, initial).map_err(refused)?),
+        Kind::Plant => {
+            let plant = Reference::with_effects(config, &file.effects, initial);
+            run(&mut plant.map_err(|error| match error {
+                EffectError::Config(error) => refused(error),
+                other => Failure::input(other.to_string()),
+            })?)
+        }
     }
 }
 
 fn summary(title: String, kind: Kind, finished: Finished, notes: Vec<String>) -> Summary {
     Summary { title, kind, totals: finished.totals, last: finished.last, notes, published: Vec::new() }
+}
+
+/// Effects of the model file that the flight law has not.
+fn left_out(model: &ModelFile, options: &Options) -> Option<String> {
+    let (_, names) = effects::flown(&model.effects);
+    let told = !names.is_empty() && !matches!(options.kind(), Kind::Plant);
+    told.then(|| format!("the flight law leaves out {}; --plant has it", names.join(", ")))
 }
 
 /// What is worth a note about a log.

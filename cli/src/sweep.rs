@@ -75,6 +75,7 @@ pub(crate) fn sweep(args: &Args) -> Result<(), Failure> {
         None => ModelFile::default(),
         Some(path) => ModelFile::open(path).map_err(|error| Failure::Input(error.into()))?,
     };
+    model.without_effects("`gimbal sweep`").map_err(|error| Failure::Input(error.into()))?;
     let most_g = model.config.range.radial_accel_mps2 / gimbal_servo::paper::STANDARD_GRAVITY_MPS2;
     if !(args.accel_g > 0.0 && args.accel_g <= most_g) {
         return Err(Failure::input(format!(

@@ -34,7 +34,7 @@ fn main() {
         (as_log(&corpus::simulate(&case)), ModelFile::default())
     };
     let mut record = Record::new(&log, &model.config);
-    record.quieten(&model.config);
+    record.quieten(&gimbal_gap::library::platform(&model));
     println!("rate noise {:.2e} filtered {}", record.rate_noise.rms_radps, record.rate_noise.pass.len() > 1);
     let mut problem = Problem::new(&record, &model);
     let search = search(&mut problem);

@@ -58,7 +58,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         record.faults = faults;
         return refused(record);
     }
-    record.quieten(&model.config);
+    record.quieten(&crate::library::platform(model));
     let mut problem = Problem::new(&record, model);
     let mut search = search(&mut problem);
     // a fit below the noise says that the noise was taken too high: what the effect did was in it

@@ -15,6 +15,7 @@
     reason = "lists of regimes and columns, each told in its order"
 )]
 pub mod axis;
+pub mod close;
 pub mod diagnose;
 pub mod fit;
 pub mod judge;

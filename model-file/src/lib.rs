@@ -20,8 +20,10 @@
 #![forbid(unsafe_code)]
 
 pub mod axis;
+pub mod effects;
 mod error;
 mod fields;
+pub mod known_good;
 mod merge;
 mod place;
 mod read;
@@ -29,7 +31,8 @@ mod tolerance;
 mod write;
 
 pub use axis::AxisModel;
+pub use effects::ModelEffect;
 pub use error::{ModelFileError, Problem};
 pub use read::{ModelFile, Preset};
 pub use tolerance::Tolerance;
-pub use write::write;
+pub use write::{write, write_model};

@@ -9,8 +9,10 @@ use serde::Deserialize;
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
+use crate::effects::{self, ModelEffect};
 use crate::error::{ModelFileError, Problem};
 use crate::fields::{home, nearest};
+use crate::known_good;
 use crate::merge::{self, Wrong};
 use crate::place::{Places, line_and_column};
 use crate::tolerance::Tolerance;
@@ -54,6 +56,10 @@ pub struct ModelFile {
     pub config: Config,
     /// How well they are known.
     pub tolerance: Tolerance,
+    /// What the axis does beside them; changes of a nominal parameter are in `config` instead.
+    pub effects: Vec<ModelEffect>,
+    /// Parts and effects that are known to be as the model says.
+    pub known_good: Vec<&'static str>,
     file: PathBuf,
     text: String,
     places: Places,
@@ -74,6 +80,8 @@ impl ModelFile {
             preset,
             config: preset.config(),
             tolerance: Tolerance::default(),
+            effects: Vec::new(),
+            known_good: Vec::new(),
             file: PathBuf::from(preset.name()),
             text: String::new(),
             places: Places::new(),
@@ -182,6 +190,14 @@ impl ModelFile {
                 self.take_tolerance(overrides)?;
                 continue;
             }
+            if name == "effects" {
+                self.effects = effects::read(overrides, &mut self.places)?;
+                continue;
+            }
+            if name == "known_good" {
+                self.known_good = known_good::read(overrides)?;
+                continue;
+            }
             let Some(base) = tables.get(name).and_then(Value::as_table) else {
                 return Err((key.span(), unknown_table(name, &tables)));
             };
@@ -194,7 +210,20 @@ impl ModelFile {
             tables.insert(name.to_owned(), Value::Table(merged));
         }
         self.config = merge::config(&tables).map_err(|message| (0..0, Problem::Impossible(message)))?;
+        let config = &mut self.config;
+        self.effects.retain(|entry| !effects::fold(entry.effect, &entry.values, config));
         Ok(())
+    }
+
+    /// The parameters, for what cannot take effects.
+    ///
+    /// # Errors
+    /// The first effect of the file, which `user` would leave out in silence.
+    pub fn without_effects(&self, user: &str) -> Result<&Config, ModelFileError> {
+        let Some(first) = self.effects.first() else { return Ok(&self.config) };
+        let name = format!("effects.{}", first.effect.name());
+        let span = first.effect.parameters().first().and_then(|own| self.span(&format!("{name}.{}", own.name)));
+        Err(self.error(span, Problem::Impossible(format!("{user} does not take `{name}`; take it out of the file"))))
     }
 
     fn take_tolerance(&mut self, overrides: &DeTable) -> Result<(), Wrong> {
@@ -221,15 +250,18 @@ fn preset(value: &DeValue) -> Result<Preset, Problem> {
     }
 }
 
+/// Tables beside those of the parameters.
+const TABLES: [&str; 3] = ["tolerance", "effects", "known_good"];
+
 fn unknown_table(name: &str, tables: &toml::Table) -> Problem {
-    let known = tables.keys().map(String::as_str).chain(["tolerance"]);
+    let known = tables.keys().map(String::as_str).chain(TABLES);
     Problem::UnknownTable { name: name.to_owned(), nearest: nearest(name, known) }
 }
 
 fn homeless(name: &str, tables: &toml::Table) -> Problem {
     let hint = match home(name) {
         Some(table) => format!("write it below [{table}]"),
-        None if tables.contains_key(name) || name == "tolerance" => format!("write [{name}] and its keys below it"),
+        None if tables.contains_key(name) || TABLES.contains(&name) => format!("write [{name}] and its keys below it"),
         None => {
             let key = nearest(name, crate::fields::FIELDS.iter().map(|(_, key, _)| *key).chain(["preset"]));
             match home(&key) {

@@ -114,3 +114,39 @@ fn contract_a_wrong_preset_and_broken_toml_are_told() {
     assert!(told("[servo\nx = 1\n").starts_with("m.toml: line 1, column"));
     assert!(told("[servo]\nmotor_lag_s = 1\nmotor_lag_s = 2\n").starts_with("m.toml: line 3, column 1: not TOML: "));
 }
+
+#[test]
+fn contract_wrong_effects_are_told_with_what_would_be_right() {
+    assert_eq!(
+        told("[effects]\ncable_sping = { stiffness_nm_per_rad = 1e-3 }\n"),
+        "m.toml: line 2, column 1: `cable_sping` is not a key of [effects]; the nearest known one is `cable_spring`"
+    );
+    let message = told("[effects.stribeck]\nexcess_nm = 1e-3\n");
+    assert!(message.contains("`effects.stribeck` lacks `rate_radps`; it takes `excess_nm`, `rate_radps`"), "{message}");
+    let message = told("[effects.stribeck]\nexcess = 1e-3\nrate_radps = 1\n");
+    assert!(message.starts_with("m.toml: line 2, column 1: `excess` is not a key of [effects.stribeck]"), "{message}");
+    let message = told("[effects]\nloop_delay = 1e-3\n");
+    assert!(message.contains("write a table with `delay_s`"), "{message}");
+    let message = told("[effects.loop_delay]\ndelay_s = -1e-3\n");
+    assert!(message.contains("`effects.loop_delay.delay_s` is -0.001; it must be zero or positive"), "{message}");
+}
+
+#[test]
+fn contract_wrong_known_parts_are_told_with_what_would_be_right() {
+    let message = told("[known_good]\nparts = [\"torque_senser\"]\n");
+    assert!(message.starts_with("m.toml: line 2, column 10: `torque_senser` is not a part"), "{message}");
+    assert!(message.contains("the nearest known one is `torque_sensor`; parts: torque_sensor, pickoff"), "{message}");
+    assert!(told("[known_good]\npart = []\n").contains("the nearest known one is `parts`"));
+    assert!(told("[known_good]\nparts = 1\n").contains("write an array of names"));
+}
+
+#[test]
+fn contract_what_cannot_take_effects_says_where_they_stand() {
+    let text = "[effects]\ncable_spring = { stiffness_nm_per_rad = 1e-3 }\n";
+    let model = ModelFile::parse(text, "m.toml").expect("reads");
+    let message = model.without_effects("`gimbal sweep`").expect_err("refused").to_string();
+    assert!(
+        message.starts_with("m.toml: line 2, column 41: `gimbal sweep` does not take `effects.cable_spring`"),
+        "{message}"
+    );
+}

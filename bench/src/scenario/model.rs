@@ -19,6 +19,7 @@ impl Scenario {
                 ModelFile::open(&path).map_err(|error| error.to_string())?
             }
         };
+        model.without_effects("a scenario").map_err(|error| error.to_string())?;
         let mut config = model.config;
         for part in &self.without {
             config = match part {

@@ -1,6 +1,6 @@
 //! The flight law: the code that is tested and flown, stepped as a flight computer would.
 
-use gimbal_servo::{BuildError, Config, Digest, Faults, Input, Law, Number, Output, State, Stop};
+use gimbal_servo::{BuildError, Config, Digest, Faults, Input, Law, Number, Output, State, Stop, effects};
 
 use super::model::{Initial, Model, Sample, Totals, share_on_stop};
 
@@ -8,6 +8,8 @@ use super::model::{Initial, Model, Sample, Totals, share_on_stop};
 pub(crate) struct Flight<N: Number> {
     law: Law<N>,
     state: State<N>,
+    /// Steps in place of the law where there are effects.
+    effects: Option<(effects::Law<N>, effects::State<N>)>,
     initial: Initial,
     output: Option<Output<N>>,
     digest: Digest,
@@ -20,10 +22,26 @@ pub(crate) struct Flight<N: Number> {
 }
 
 impl<N: Number> Flight<N> {
-    /// Before the first row.
+    /// The nominal axis before the first row.
     pub(crate) fn new(config: &Config, initial: Initial) -> Result<Self, BuildError> {
+        Self::with_effects(config, &effects::Config::default(), initial)
+    }
+
+    /// Before the first row.
+    pub(crate) fn with_effects(
+        config: &Config,
+        effects: &effects::Config,
+        initial: Initial,
+    ) -> Result<Self, BuildError> {
         let law: Law<N> = config.build()?;
+        let effects = if *effects == effects::Config::default() {
+            None
+        } else {
+            let law = config.build_with(effects)?;
+            Some((law, law.start()))
+        };
         Ok(Self {
+            effects,
             state: law.start(),
             law,
             initial,
@@ -37,6 +55,11 @@ impl<N: Number> Flight<N> {
             faults: Faults::NONE,
         })
     }
+
+    /// What has stepped.
+    fn axis(&self) -> &State<N> {
+        self.effects.as_ref().map_or(&self.state, |(_, state)| state.axis())
+    }
 }
 
 impl<N: Number> Model for Flight<N> {
@@ -45,8 +68,14 @@ impl<N: Number> Model for Flight<N> {
         let input = self.law.units().input(row);
         if self.samples == 0 && self.initial == Initial::Settled {
             self.state = self.law.settled(input);
+            if let Some((law, state)) = &mut self.effects {
+                *state = law.settled(input);
+            }
         }
-        let output = self.law.step(&mut self.state, input);
+        let output = match &mut self.effects {
+            None => self.law.step(&mut self.state, input),
+            Some((law, state)) => law.step(state, input),
+        };
         self.digest.add_output(&output);
         self.samples += 1;
         self.faults |= output.faults;
@@ -73,8 +102,8 @@ impl<N: Number> Model for Flight<N> {
                 Some(Stop::Negative) => -1,
                 _ => 0,
             },
-            velocity_error_mps: self.law.velocity_error_mps(&self.state),
-            position_error_m: self.law.position_error_m(&self.state),
+            velocity_error_mps: self.law.velocity_error_mps(self.axis()),
+            position_error_m: self.law.position_error_m(self.axis()),
             faults: output.map_or(Faults::NONE, |output| output.faults),
         }
     }
@@ -86,7 +115,7 @@ impl<N: Number> Model for Flight<N> {
             peak_gimbal_angle_rad: self.peak_gimbal_angle.to_f64(units.gimbal_angle),
             peak_gyro_angle_rad: self.peak_gyro_angle.to_f64(units.gyro_angle),
             time_on_stop_s: self.periods_on_stop * self.period_s,
-            residual_offset_rad: self.law.residual_offset_rad(&self.state),
+            residual_offset_rad: self.law.residual_offset_rad(self.axis()),
             faults: self.faults,
             digest: self.digest.value(),
         }

@@ -1,6 +1,7 @@
 //! The reference plant, fed as the flight law is.
 
-use gimbal_plant::{Plant, Row, State, Stop, StopEvent, StopEventKind};
+use gimbal_model_file::ModelEffect;
+use gimbal_plant::{EffectError, Plant, Row, State, Stop, StopEvent, StopEventKind};
 use gimbal_servo::{BuildError, Config, Digest, Faults, Input};
 
 use super::model::{Initial, Model, Sample, Totals};
@@ -21,9 +22,25 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// Before the first row.
+    /// The nominal plant before the first row.
     pub(crate) fn new(config: &Config, initial: Initial) -> Result<Self, BuildError> {
-        let plant = Plant::new(config)?;
+        Ok(Self::of(config, Plant::new(config)?, initial))
+    }
+
+    /// Before the first row.
+    pub(crate) fn with_effects(
+        config: &Config,
+        effects: &[ModelEffect],
+        initial: Initial,
+    ) -> Result<Self, EffectError> {
+        let mut plant = Plant::new(config)?;
+        for entry in effects {
+            plant = plant.with_effect(entry.effect, &entry.values)?;
+        }
+        Ok(Self::of(config, plant, initial))
+    }
+
+    fn of(config: &Config, plant: Plant, initial: Initial) -> Self {
         let totals = Totals {
             samples: 0,
             peak_gimbal_angle_rad: 0.0,
@@ -35,7 +52,7 @@ impl Reference {
         };
         let state = plant.start();
         let digest = Digest::default();
-        Ok(Self { config: *config, state, initial, plant, row: None, sample: None, totals, digest })
+        Self { config: *config, state, initial, plant, row: None, sample: None, totals, digest }
     }
 
     /// phi less what the gyro has seen of it, which is the integral of (2): `(Jo theta' + Bo theta) / H`.
@@ -88,8 +105,8 @@ impl Model for Reference {
         let of = |signal: fn(&gimbal_plant::Sample) -> f64| self.sample.as_ref().map_or(0.0, signal);
         Sample {
             gimbal_angle_rad: of(|sample| sample.gimbal_angle_rad),
-            gyro_angle_rad: of(|sample| sample.gyro_angle_rad),
-            motor_torque_nm: of(|sample| sample.motor_torque_nm),
+            gyro_angle_rad: of(|sample| sample.logged.gyro_angle_rad),
+            motor_torque_nm: of(|sample| sample.logged.motor_torque_nm),
             friction_torque_nm: of(|sample| sample.friction_torque_nm),
             unbalance_torque_nm: of(|sample| sample.unbalance_torque_nm),
             stop: match self.sample.map(|sample| sample.stop) {

@@ -8,7 +8,7 @@ use super::Whitener;
 use super::normal::{products, slices};
 use super::rest::{Raw, rest};
 use super::whiten::Loop;
-use crate::library::{Candidate, Nuisance, Offer, apply, candidates, nuisances};
+use crate::library::{Candidate, Nuisance, Offer, apply, candidates, hold, not_looked_for, nuisances, platform};
 use crate::record::{Record, Signal, rough};
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
@@ -55,6 +55,8 @@ pub struct Problem<'a> {
     pub nuisances: Vec<Nuisance>,
     /// Ways in which effects may show.
     pub candidates: Vec<Candidate>,
+    /// Effects that are none: their parts are known to be good, or they are in the model.
+    pub not_looked_for: Vec<&'static str>,
     /// Which column is what.
     pub columns: Columns,
     /// Whitened sensitivities.
@@ -79,7 +81,8 @@ impl<'a> Problem<'a> {
     /// The same with the noise taken from a residual that is better known.
     #[must_use]
     pub(crate) fn with_noise(record: &'a Record, model: &ModelFile, rest_known: Option<&Signals>) -> Self {
-        let mut base = Physics::nominal(&model.config);
+        let mut base = platform(model);
+        let not_looked_for = not_looked_for(model);
         base.config.period_s = record.inputs.period_s;
         // the float goes as far as the log shows that it goes
         let reached = record.channel(Signal::GyroAngle).map_or(0.0, |channel| peak(&channel.values));
@@ -90,7 +93,8 @@ impl<'a> Problem<'a> {
         let raw = residual(record, &nominal);
         let noise: Vec<f64> =
             raw.iter().zip(&record.channels).map(|(raw, channel)| rough(raw, &channel.valid)).collect();
-        let nuisances = nuisances(&model.tolerance, &base);
+        let mut nuisances = nuisances(&model.tolerance, &base);
+        hold(&mut nuisances, &model.known_good);
         let sees = |signal| record.channel(signal).is_some();
         let peak_torque_nm = record
             .channel(Signal::MotorTorque)
@@ -103,6 +107,7 @@ impl<'a> Problem<'a> {
             sees_cross: !record.inputs.cross_radps.is_empty(),
         };
         let mut candidates = candidates(&record.inputs, &offer);
+        candidates.retain(|candidate| !not_looked_for.contains(&candidate.effect));
         let draft = Draft { record, base: &base, begin: &begin, nominal: &nominal };
         let (columns, mut raw_columns, sigma) = draft.columns(&nuisances, &candidates);
         let valid = valid(record);
@@ -123,7 +128,8 @@ impl<'a> Problem<'a> {
         // lines of ripple stand out of it
         let lines = crate::fit::search::ripple_cycles(record, &nominal, &target, &noise, &valid);
         let (mut columns, mut sigma) = (columns, sigma);
-        for candidate in library_ripple(&record.inputs, &offer, &lines) {
+        let ripple = library_ripple(&record.inputs, &offer, &lines);
+        for candidate in ripple.into_iter().filter(|own| !not_looked_for.contains(&own.effect)) {
             columns.first.push(raw_columns.len());
             let mut probes = draft.probes(&candidate);
             scale(&mut probes, &scaled);
@@ -142,7 +148,21 @@ impl<'a> Problem<'a> {
         let whitened: Vec<Vec<f64>> = raw_columns.into_par_iter().map(|column| whitener.apply(&column)).collect();
         let gram = products(&slices(&whitened), &slices(&whitened), 0..whitener.rows());
         let stop_rad = model.config.gyro.stop_angle_rad;
-        Self { record, stop_rad, base, begin, nuisances, candidates, columns, whitened, gram, whitener, noise, sigma }
+        Self {
+            record,
+            stop_rad,
+            base,
+            begin,
+            nuisances,
+            candidates,
+            not_looked_for,
+            columns,
+            whitened,
+            gram,
+            whitener,
+            noise,
+            sigma,
+        }
     }
 
     /// Whitened residual of a prediction.

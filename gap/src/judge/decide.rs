@@ -260,7 +260,7 @@ fn unknown(before: f64, after: f64, found: bool) -> f64 {
 /// What the samples show by themselves: a stop elsewhere, a grid of angles.
 fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut Decision) {
     let mut add = |effect: &'static str, value: f64, error: f64, probability: f64| {
-        if Effect::from_name(effect).is_none() {
+        if Effect::from_name(effect).is_none() || problem.not_looked_for.contains(&effect) {
             return;
         }
         decision.found.push(Found { effect, probability, values: vec![value], errors: vec![error] });

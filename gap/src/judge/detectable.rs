@@ -27,6 +27,7 @@ pub struct Detectable {
 pub fn detectable(problem: &Problem, tolerance: &Tolerance) -> Vec<Detectable> {
     let nothing = DVector::zeros(problem.gram.nrows());
     Effect::all()
+        .filter(|effect| !problem.not_looked_for.contains(&effect.name()))
         .map(|effect| {
             let parameter = effect.parameters()[0];
             let sizes =

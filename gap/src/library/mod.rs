@@ -2,8 +2,10 @@
 
 mod apply;
 mod candidates;
+mod model;
 mod nuisance;
 
 pub use apply::apply;
 pub use candidates::{Candidate, Offer, candidates};
+pub use model::{hold, not_looked_for, platform};
 pub use nuisance::{Nuisance, nuisances};

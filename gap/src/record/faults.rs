@@ -38,7 +38,7 @@ fn scale(values: &mut [f64], by: f64) {
 /// Mistakes in the data, in words.
 #[must_use]
 pub fn faults(record: &Record, model: &ModelFile) -> Vec<String> {
-    let mut physics = Physics::nominal(&model.config);
+    let mut physics = crate::library::platform(model);
     physics.config.gyro.stop_angle_rad *= 1.5;
     let first = |signal| record.channel(signal).map(|channel| channel.values[0]);
     let misfit = |inputs: &Inputs| -> (f64, Vec<f64>) {

@@ -10,7 +10,6 @@
 //! White motion and white noise look alike in the rate; the outputs tell them apart. The filter stays when the
 //! nominal prediction from the filtered rate is closer to them from one row to the next.
 
-use gimbal_servo::Config;
 use realfft::RealFftPlanner;
 
 use super::Record;
@@ -30,11 +29,11 @@ const APART: usize = 12;
 
 impl Record {
     /// Filters the rate where that brings the prediction closer.
-    pub fn quieten(&mut self, config: &Config) {
+    pub fn quieten(&mut self, physics: &Physics) {
         let Some((rate_radps, pass)) = filtered(&self.inputs.rate_radps) else { return };
         let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
-        inputs.complete(&config.bearing, self.inputs.turned_rad[0]);
-        let (as_logged, quiet) = (self.misfit(config, &self.inputs), self.misfit(config, &inputs));
+        inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
+        let (as_logged, quiet) = (self.misfit(physics, &self.inputs), self.misfit(physics, &inputs));
         let ratios: Vec<f64> = quiet.iter().zip(&as_logged).map(|(quiet, logged)| quiet / logged).collect();
         if ratios.iter().all(|ratio| *ratio < 2.0 - BETTER) && ratios.iter().any(|ratio| *ratio < BETTER) {
             self.inputs = inputs;
@@ -43,9 +42,8 @@ impl Record {
     }
 
     /// What changes between rows that stand `APART` in the nominal misfit of each output.
-    fn misfit(&self, config: &Config, inputs: &Inputs) -> Vec<f64> {
-        let physics = Physics::nominal(config);
-        let prediction = predict(&physics, inputs, &self.begin(&physics, inputs), usize::MAX);
+    fn misfit(&self, physics: &Physics, inputs: &Inputs) -> Vec<f64> {
+        let prediction = predict(physics, inputs, &self.begin(physics, inputs), usize::MAX);
         let of = |channel: &super::Channel| {
             let predicted = crate::fit::predicted(channel.signal, &prediction);
             let off = |k: usize| channel.values[k] - predicted[k];

@@ -1,0 +1,92 @@
+//! The corrected model: what is found goes into the model file, and the gap is closed.
+
+#[path = "../examples/corpus/mod.rs"]
+mod corpus;
+
+use corpus::{Case, Excitation, as_log, simulate};
+use gimbal_gap::close::corrected;
+use gimbal_gap::{Diagnosis, diagnose};
+use gimbal_log::Log;
+use gimbal_model_file::{ModelFile, effects};
+use gimbal_plant::Effect;
+use gimbal_servo::{Config, Input};
+
+fn log_with(effects: &[(&'static str, Vec<f64>)], seed: u64) -> Log {
+    let effects = effects.to_vec();
+    let case = Case { seed, excitation: Excitation::Manoeuvre, seconds: 20.0, effects, drift: 0.6, noise: 1.0 };
+    as_log(&simulate(&case))
+}
+
+fn typical(name: &'static str) -> (&'static str, Vec<f64>) {
+    (name, Effect::from_name(name).expect("an effect of the table").typical())
+}
+
+fn names(diagnosis: &Diagnosis) -> Vec<&'static str> {
+    diagnosis.decision.iter().flat_map(|decision| decision.found.iter().map(|found| found.effect)).collect()
+}
+
+fn closed(log: &Log) -> (Diagnosis, ModelFile) {
+    let model = ModelFile::default();
+    let diagnosis = diagnose(log, &model);
+    let text = corrected(&diagnosis, &model).unwrap_or_else(|why| panic!("{why}: {:?}", names(&diagnosis)));
+    let model = ModelFile::parse(&text, "corrected.toml").unwrap_or_else(|error| panic!("{error}\n{text}"));
+    (diagnosis, model)
+}
+
+/// theta of the flight law under a model, and rms of what the log has beside it, from the third second on.
+fn off_rad(log: &Log, model: &ModelFile) -> f64 {
+    use gimbal_log::Column::{AccelX, AccelY, AccelZ, GyroAngle, VehicleRate};
+    let (flown, _) = effects::flown(&model.effects);
+    let law = Config { period_s: 1e-3, ..model.config }.build_with::<f32>(&flown).expect("builds");
+    let column = |column| log.column(column).expect("a column");
+    let [x, y, z, rate, theta] = [AccelX, AccelY, AccelZ, VehicleRate, GyroAngle].map(column);
+    let row = |k: usize| {
+        law.axis().units().input(&Input {
+            accel_x_mps2: x[k],
+            accel_y_mps2: y[k],
+            accel_z_mps2: z[k],
+            vehicle_rate_radps: rate[k],
+            ..Input::default()
+        })
+    };
+    let mut state = law.settled(row(0));
+    let mut sum = 0.0;
+    for (k, theta) in theta.iter().enumerate() {
+        let predicted = law.axis().units().output(&law.step(&mut state, row(k))).gyro_angle_rad;
+        if k >= 3000 {
+            sum += (theta - predicted).powi(2);
+        }
+    }
+    (sum / (theta.len() - 3000) as f64).sqrt()
+}
+
+#[test]
+fn closed_form_what_is_found_and_written_is_no_gap_any_more() {
+    for name in ["cable_spring", "gyro_damping", "loop_delay"] {
+        let log = log_with(&[typical(name)], 23);
+        let (first, model) = closed(&log);
+        let second = diagnose(&log, &model);
+        assert_eq!((second.verdict().name(), names(&second)), ("no_gap", Vec::new()), "{name}");
+        // The flight law with the corrected model follows the log.
+        let (before, after) = (off_rad(&log, &ModelFile::default()), off_rad(&log, &model));
+        println!("{name}: {:?}; theta off by {before:.2e} rad before, {after:.2e} rad after", names(&first));
+        assert!(after < 0.15 * before, "{name}: {before:.2e} to {after:.2e} rad");
+    }
+}
+
+#[test]
+fn contract_known_good_parts_are_not_blamed() {
+    let log = log_with(&[typical("gyro_damping")], 23);
+    let text = "[known_good]\nparts = [\"gyro\", \"torque_sensor\"]\n";
+    let model = ModelFile::parse(text, "m.toml").expect("reads");
+    let diagnosis = diagnose(&log, &model);
+    for name in ["gyro_damping", "angular_momentum", "torque_scale", "torque_bias"] {
+        assert!(!names(&diagnosis).contains(&name), "{:?}", names(&diagnosis));
+        assert!(!diagnosis.detectable.iter().any(|own| own.effect == name), "{name}");
+    }
+    // The gap is there all the same, and the held parameter stays where it is.
+    assert_ne!(diagnosis.verdict().name(), "no_gap");
+    let fitted = diagnosis.fit.expect("a fit").physics.config.gyro.damping_nm_s_per_rad;
+    let nominal = model.config.gyro.damping_nm_s_per_rad;
+    assert!((fitted / nominal - 1.0).abs() < 1e-3, "{fitted} of {nominal}");
+}
