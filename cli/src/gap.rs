@@ -1,5 +1,6 @@
 //! `gimbal gap`: where the gap between a model and a log lies, which effect causes it, how far it shrinks.
 
+use std::cell::RefCell;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -9,7 +10,7 @@ use gimbal_gap::close;
 use gimbal_gap::report as told;
 use gimbal_log::{AtomicFile, Log, Needs};
 use gimbal_model_file::{AxisModel, ModelFile, known_good};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::exit::Failure;
 use crate::interrupt;
@@ -18,13 +19,13 @@ use crate::report;
 /// Diagnoses the gap between a model and logs.
 #[derive(Debug, Parser)]
 pub(crate) struct Args {
-    /// Logs, each diagnosed by itself
+    /// Logs; several of one platform are diagnosed each by itself, then together
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
     /// Model file
     #[arg(long, value_name = "FILE.toml")]
     model: Option<PathBuf>,
-    /// Folder for gap.json and gap.html; with several logs, a folder in it for each
+    /// Folder for gap.json and gap.html; with several logs, a folder in it for each, and pooled.json and pooled.html
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Part that is known to be good, such as `torque_sensor`, or effect that is none: as `[known_good]` in the model file
@@ -36,7 +37,7 @@ pub(crate) struct Args {
     /// Log that is not fitted: what the diagnosis of each LOG leaves of it is told (plain axes alone)
     #[arg(long, value_name = "LOG")]
     unseen: Vec<PathBuf>,
-    /// Print the report as JSON; with several logs, a list
+    /// Print the report as JSON; with several logs, one object with all
     #[arg(long)]
     json: bool,
 }
@@ -74,7 +75,8 @@ pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
     }
     let model = model;
     let model_name = args.model.as_deref().map_or_else(|| "consistent".to_owned(), |path| path.display().to_string());
-    reported(args, |path, name| {
+    let kept = RefCell::new(Vec::new());
+    let told = reported(args, |path, name| {
         let diagnosis = gimbal_gap::diagnose(&Log::open(path, Needs::Diagnosis)?, &model);
         let mut text = told::text(&diagnosis);
         if let Some(written) = &args.write_model {
@@ -87,14 +89,40 @@ pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
             };
             text.push_str(&remark);
         }
-        Ok(Told { json: told::json(&diagnosis, name, &model_name), page: told::html(&diagnosis, name), text })
-    })
+        let told = Told { json: told::json(&diagnosis, name, &model_name), page: told::html(&diagnosis, name), text };
+        if args.logs.len() > 1 {
+            kept.borrow_mut().push(diagnosis);
+        }
+        Ok(told)
+    })?;
+    let diagnoses = kept.into_inner();
+    if diagnoses.is_empty() {
+        return printed(args, &told.texts, &one_or_list(told.reports));
+    }
+    let names: Vec<String> = args.logs.iter().map(|path| path.display().to_string()).collect();
+    let pool = gimbal_gap::pool(&diagnoses, &model);
+    let pooled = pool.json(&names);
+    if let Some(out) = &args.out {
+        let text = format!("{pooled:#}\n");
+        write(&out.join("pooled.json"), &text)?;
+        write(&out.join("pooled.html"), &told::pooled(&pool, &names))?;
+    }
+    let texts: Vec<String> = told.texts.into_iter().chain([pool.text(&names)]).collect();
+    printed(args, &texts, &json!({ "schema": "gimbal-gap-pool/1", "pooled": pooled, "logs": told.reports }))
+}
+
+fn one_or_list(mut reports: Vec<Value>) -> Value {
+    if reports.len() == 1 { reports.remove(0) } else { Value::Array(reports) }
+}
+
+fn printed(args: &Args, texts: &[String], json: &Value) -> Result<(), Failure> {
+    report::print(&texts.join("\n\n"), args.json.then_some(json))
 }
 
 /// Diagnoses a plain axis, one without a gyro.
 fn bare_axis(args: &Args, model: &AxisModel, model_name: &str) -> Result<(), Failure> {
     let open = |path: &PathBuf| AxisLog::open(path, model).map_err(|error| Failure::Input(error.into()));
-    reported(args, |path, name| {
+    let told = reported(args, |path, name| {
         let unseen = args.unseen.iter().map(|path| Ok((path.display().to_string(), open(path)?)));
         let diagnosis = axis::diagnose(open(path)?, model, unseen.collect::<Result<_, Failure>>()?);
         Ok(Told {
@@ -102,7 +130,8 @@ fn bare_axis(args: &Args, model: &AxisModel, model_name: &str) -> Result<(), Fai
             page: axis::html(&diagnosis, name),
             text: axis::text(&diagnosis),
         })
-    })
+    })?;
+    printed(args, &told.texts, &one_or_list(told.reports))
 }
 
 /// What is told of one log.
@@ -112,8 +141,14 @@ struct Told {
     text: String,
 }
 
-/// Log after log, by its path and name; reports written as they come, told at the end.
-fn reported(args: &Args, diagnosed: impl Fn(&PathBuf, &str) -> Result<Told, Failure>) -> Result<(), Failure> {
+/// What is told of all.
+struct All {
+    texts: Vec<String>,
+    reports: Vec<Value>,
+}
+
+/// Log after log, by its path and name; reports written as they come.
+fn reported(args: &Args, diagnosed: impl Fn(&PathBuf, &str) -> Result<Told, Failure>) -> Result<All, Failure> {
     let mut texts = Vec::new();
     let mut reports: Vec<Value> = Vec::new();
     for path in &args.logs {
@@ -130,8 +165,7 @@ fn reported(args: &Args, diagnosed: impl Fn(&PathBuf, &str) -> Result<Told, Fail
         texts.push(if args.logs.len() == 1 { text } else { format!("{name}\n{text}") });
         reports.push(json);
     }
-    let json = if reports.len() == 1 { reports.remove(0) } else { Value::Array(reports) };
-    report::print(&texts.join("\n\n"), args.json.then_some(&json))
+    Ok(All { texts, reports })
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

@@ -110,3 +110,29 @@ fn cross_effects_of_a_model_file_reach_the_flight_law_and_the_plant() {
     let run = bench.run(&["run", "log.csv", "--model", "m.toml"]);
     assert!(String::from_utf8_lossy(&run.stdout).contains("the flight law leaves out dead_zone; --plant has it"));
 }
+
+#[test]
+fn contract_several_logs_are_taken_together() {
+    let bench = Bench::new();
+    for (name, phase) in [("a.csv", 0.0), ("b.csv", 1.0)] {
+        bench.write(name, logged("gyro_damping", &[0.25], phase));
+    }
+    let all = bench.json(&["gap", "a.csv", "b.csv", "--out", "out", "--json"]);
+    assert_eq!((&all["schema"], all["logs"].as_array().map(Vec::len)), (&"gimbal-gap-pool/1".into(), Some(2)));
+    let pooled = &all["pooled"];
+    assert_eq!(pooled["sets"][0]["effects"][0], "gyro_damping", "{pooled:#}");
+    let own = &pooled["parameters"][0];
+    assert_eq!((&own["drifts"], own["logs"].as_array().map(Vec::len)), (&false.into(), Some(2)), "{own:#}");
+    assert!((number(own, "value") - 0.25).abs() < 0.02, "{own:#}");
+    for log in pooled["unseen"].as_array().expect("logs") {
+        let theta = &log["signals"][0];
+        assert!(number(theta, "after") < 0.3 * number(theta, "before"), "{log:#}");
+    }
+    let page = bench.read("out/pooled.html");
+    assert!(page.contains("Parameters from run to run") && !page.contains("http"), "{page}");
+    for folder in ["out/a", "out/b"] {
+        assert!(bench.read(&format!("{folder}/gap.html")).contains("figure class=\"chart\""));
+        let report: serde_json::Value = serde_json::from_str(&bench.read(&format!("{folder}/gap.json"))).expect("JSON");
+        assert_eq!(report["schema"], "gimbal-gap/1");
+    }
+}

@@ -10,7 +10,7 @@ use gimbal_servo::Config;
 
 use crate::diagnose::Diagnosis;
 use crate::fit::Fit;
-use crate::judge::{Found, Verdict};
+use crate::judge::{Decision, Found, Verdict};
 
 /// The text of the corrected model file.
 ///
@@ -26,6 +26,16 @@ pub fn corrected(diagnosis: &Diagnosis, model: &ModelFile) -> Result<String, Str
             _ => "no effect was found that would close the gap".to_owned(),
         });
     }
+    let (config, all) = closing(decision, fit, model);
+    let before = gimbal_model_file::write(model.preset, &model.config, &model.tolerance);
+    let nominal: Vec<(&str, &str, &str)> = entries(&before).collect();
+    let plain = gimbal_model_file::write(model.preset, &config, &model.tolerance);
+    let remark = |table: &str, key: &str| remark(table, key, &nominal, &plain, &decision.found);
+    Ok(write_model(model.preset, &config, &model.tolerance, &all, &model.known_good, remark))
+}
+
+/// Parameters and effects of the model with what was found in it.
+pub(crate) fn closing(decision: &Decision, fit: &Fit, model: &ModelFile) -> (Config, Vec<ModelEffect>) {
     let mut config = fitted(fit, model);
     let mut all = model.effects.clone();
     for found in &decision.found {
@@ -38,11 +48,7 @@ pub fn corrected(diagnosis: &Diagnosis, model: &ModelFile) -> Result<String, Str
         }
         add(&mut all, effect, found);
     }
-    let before = gimbal_model_file::write(model.preset, &model.config, &model.tolerance);
-    let nominal: Vec<(&str, &str, &str)> = entries(&before).collect();
-    let plain = gimbal_model_file::write(model.preset, &config, &model.tolerance);
-    let remark = |table: &str, key: &str| remark(table, key, &nominal, &plain, &decision.found);
-    Ok(write_model(model.preset, &config, &model.tolerance, &all, &model.known_good, remark))
+    (config, all)
 }
 
 /// The nominal parameters as fitted.

@@ -4,15 +4,23 @@ use gimbal_log::Log;
 use gimbal_model_file::ModelFile;
 
 use crate::fit::{Fit, Problem, search, without};
-use crate::judge::{Decision, Detectable, Shrink, Verdict, decide, detectable, shrink};
+use crate::judge::{
+    Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Verdict, Yardstick, bounds_hit, correlations,
+    curve, decide, detectable, free_running, one_step, portrait, shrink,
+};
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
 use crate::record::{Record, faults};
 
 /// A fit may leave this much of the noise that was expected, and no less.
 const TOO_QUIET: f64 = 0.9;
 
+/// A residual this many times the white noise of every sensor is no noise, however slow.
+const NO_NOISE: f64 = 25.0;
+/// The same where the effects named take nothing away.
+const NOTHING_GONE: f64 = 10.0;
+
 /// Everything that a report says about one log.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Diagnosis {
     /// Log as read.
     pub record: Record,
@@ -36,6 +44,20 @@ pub struct Diagnosis {
     pub spectra: [Vec<Spectrum>; 2],
     /// The fit that was chosen, or that of the nominal parameters.
     pub fit: Option<Fit>,
+    /// What is left, where something is.
+    pub portrait: Option<Portrait>,
+    /// The reference plant, free, before and after.
+    pub free_running: Vec<Yardstick>,
+    /// One step ahead, before and after.
+    pub one_step: Vec<Yardstick>,
+    /// Fitted values that move together.
+    pub correlations: Vec<Correlation>,
+    /// Values at the end of their range.
+    pub bounds_hit: Vec<String>,
+    /// Effects that were not looked for.
+    pub not_looked_for: Vec<&'static str>,
+    /// Friction over the rate.
+    pub curve: Vec<CurvePoint>,
 }
 
 impl Diagnosis {
@@ -48,6 +70,7 @@ impl Diagnosis {
 
 /// Diagnoses one log against a model.
 #[must_use]
+#[allow(clippy::too_many_lines, reason = "the way, told in its order")]
 pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let mut record = Record::new(log, &model.config);
     if !record.faults.is_empty() {
@@ -69,13 +92,18 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         problem = Problem::with_noise(&record, model, Some(&rest));
         search = crate::fit::search(&mut problem);
     }
-    let decision = decide(&problem, &search, &model.tolerance);
+    let mut decision = decide(&problem, &search, &model.tolerance);
     let channels = record.channels.len();
-    let fit = match decision.chosen {
+    let null = search.null.clone();
+    let mut fit = match decision.chosen {
         Some(index) => search.fits.swap_remove(index),
         None => search.null,
     };
-    let shrink = shrink(&problem, &fit);
+    let mut shrink = shrink(&problem, &fit);
+    if contradicted(&mut decision, &shrink) {
+        shrink = crate::judge::shrink(&problem, &null);
+        fit = null;
+    }
     let period_s = record.inputs.period_s;
     let spectra = [&shrink.nominal, &fit.prediction].map(|prediction| {
         let residual = crate::fit::raw_residual(&record, prediction);
@@ -119,9 +147,18 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     };
     let gap = decision.verdict != Verdict::NoGap;
     let detectable = detectable(&problem, &model.tolerance);
+    let left = matches!(decision.verdict, Verdict::PartlyExplained | Verdict::Unexplained);
+    let portrait = left.then(|| portrait(&problem, &fit));
+    let (correlations, bounds_hit) = (correlations(&problem, &fit), bounds_hit(&problem, &fit));
+    let curve = curve(&problem, &fit, &shrink.nominal);
+    let free_running = if gap { free_running(&record, model, &decision, &fit) } else { Vec::new() };
+    let [before, after] =
+        [&shrink.nominal, &fit.prediction].map(|prediction| crate::fit::raw_residual(&record, prediction));
+    let one_step = if gap { one_step(&record, &before, &after) } else { Vec::new() };
     let found_regimes = if gap { regimes(&record, &fit.prediction, &total, channels) } else { Vec::new() };
     let found_spans = if gap && !fit.set.0.is_empty() { spans(&total, channels, period_s) } else { Vec::new() };
     let bands = if gap { Spectrum::bands(&spectra[0]) } else { Vec::new() };
+    let not_looked_for = std::mem::take(&mut problem.not_looked_for);
     drop(problem);
     Diagnosis {
         record,
@@ -135,7 +172,39 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         detectable,
         spectra,
         fit: Some(fit),
+        portrait,
+        free_running,
+        one_step,
+        correlations,
+        bounds_hit,
+        not_looked_for,
+        curve,
     }
+}
+
+/// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.
+fn contradicted(decision: &mut Decision, shrink: &Shrink) -> bool {
+    let beyond = |times: f64| shrink.signals.iter().all(|signal| signal.after > times * signal.noise_floor);
+    let nothing_gone = shrink.signals.iter().all(|signal| signal.ci95_percent[0] <= 0.0);
+    let contradicted = match decision.verdict {
+        Verdict::NoGap => beyond(NO_NOISE),
+        _ => !decision.found.is_empty() && nothing_gone && beyond(NOTHING_GONE),
+    };
+    if contradicted && !shrink.signals.is_empty() {
+        let least = shrink.signals.iter().map(|signal| signal.after / signal.noise_floor).fold(f64::MAX, f64::min);
+        decision.notes.push(format!(
+            "what is left is at least {least:.0} times the white noise of every sensor, and nothing of the library takes it away"
+        ));
+        decision.verdict = Verdict::Unexplained;
+        decision.found.clear();
+        decision.alternatives.clear();
+        decision.chosen = None;
+        let unknown = decision.unknown_probability.max(0.9);
+        let rest = (1.0 - unknown) / (1.0 - decision.unknown_probability).max(1e-9);
+        decision.ranking.iter_mut().for_each(|set| set.probability *= rest);
+        decision.unknown_probability = unknown;
+    }
+    contradicted
 }
 
 fn refused(record: Record) -> Diagnosis {
@@ -151,5 +220,12 @@ fn refused(record: Record) -> Diagnosis {
         detectable: Vec::new(),
         spectra: [Vec::new(), Vec::new()],
         fit: None,
+        portrait: None,
+        free_running: Vec::new(),
+        one_step: Vec::new(),
+        correlations: Vec::new(),
+        bounds_hit: Vec::new(),
+        not_looked_for: Vec::new(),
+        curve: Vec::new(),
     }
 }

@@ -21,8 +21,10 @@ pub mod fit;
 pub mod judge;
 pub mod library;
 pub mod place;
+pub mod pool;
 pub mod record;
 pub mod report;
 pub mod simulate;
 
 pub use diagnose::{Diagnosis, diagnose};
+pub use pool::{Pool, pool};

@@ -5,7 +5,7 @@ mod corpus;
 
 use corpus::{Case, Excitation, as_log, simulate};
 use gimbal_gap::close::corrected;
-use gimbal_gap::{Diagnosis, diagnose};
+use gimbal_gap::{Diagnosis, diagnose, pool};
 use gimbal_log::Log;
 use gimbal_model_file::{ModelFile, effects};
 use gimbal_plant::Effect;
@@ -89,4 +89,35 @@ fn contract_known_good_parts_are_not_blamed() {
     let fitted = diagnosis.fit.expect("a fit").physics.config.gyro.damping_nm_s_per_rad;
     let nominal = model.config.gyro.damping_nm_s_per_rad;
     assert!((fitted / nominal - 1.0).abs() < 1e-3, "{fitted} of {nominal}");
+}
+
+#[test]
+fn closed_form_logs_of_one_platform_say_together_what_each_says() {
+    let model = ModelFile::default();
+    let log = |seed, stiffness| {
+        let effects = vec![("cable_spring", vec![stiffness])];
+        let case = Case { seed, excitation: Excitation::Manoeuvre, seconds: 12.0, effects, drift: 0.0, noise: 1.0 };
+        diagnose(&as_log(&simulate(&case)), &model)
+    };
+    let (one, two, stiffer) = (log(23, 2e-3), log(24, 2e-3), log(25, 3e-3));
+    let same = pool(&[one.clone(), two], &model);
+    assert_eq!(same.verdict.name(), "explained", "{}", same.text(&["one".into(), "two".into()]));
+    assert_eq!(same.sets[0].effects, ["cable_spring"]);
+    let [shared] = &same.shared[..] else { panic!("{:?}", same.shared) };
+    assert!(!shared.drifts() && (shared.mean[0] - 2e-3).abs() < 4.0 * shared.mean[1], "{shared:?}");
+    // Each log under what the other one says: most of the gap is gone.
+    for (_, signals) in &same.unseen {
+        for own in signals {
+            assert!(own.after < 0.25 * own.before, "{own:?}");
+        }
+    }
+    // Half as stiff again is no scatter of the estimate.
+    let drifting = pool(&[one.clone(), stiffer], &model);
+    assert!(drifting.shared.iter().any(|own| own.effect == "cable_spring" && own.drifts()), "{:?}", drifting.shared);
+    // A log repeats itself: what differs is nothing.
+    let twice = pool(&[one.clone(), one], &model);
+    let [repeat] = &twice.repeats[..] else { panic!("{:?}", twice.repeats) };
+    assert_eq!(repeat.logs, [0, 1]);
+    assert!(repeat.floors.len() == 2 && repeat.floors.iter().all(|(_, _, rms)| *rms < 1e-12), "{repeat:?}");
+    assert!(same.repeats.is_empty());
 }

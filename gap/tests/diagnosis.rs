@@ -95,6 +95,17 @@ fn the_report_keeps_its_schema() {
         assert!(entry["after"].as_f64() < entry["before"].as_f64());
     }
     assert!(report["shrink"]["velocity_error_mps"]["before"].is_number());
+    for how in ["free_running", "one_step"] {
+        let signals = report["shrink"][how].as_array().expect(how);
+        assert_eq!(signals.len(), 2, "{how}");
+        for entry in signals {
+            assert!(entry["after"].as_f64() < entry["before"].as_f64(), "{how}: {entry}");
+        }
+    }
+    for list in ["parameter_correlations", "bounds_hit", "not_looked_for"] {
+        assert!(report[list].is_array(), "{list}");
+    }
+    assert!(report["left_over"].is_null());
     assert!(report["unknown_probability"].is_number() && report["notes"].is_array());
     let decision = diagnosis.decision.expect("a decision");
     let sum: f64 = decision.ranking.iter().map(|set| set.probability).sum::<f64>() + decision.unknown_probability;

@@ -7,7 +7,7 @@ use serde_json::{Value, json as object};
 use super::diagnose::AxisDiagnosis;
 use super::judge::Found;
 use crate::judge::{Verdict, experiment};
-use crate::report::page::{Line, STYLE, escaped, plot};
+use crate::report::page::{Line, SCRIPT, STYLE, escaped, plot};
 
 /// The report of one log; `log` and `model` are their names.
 #[must_use]
@@ -252,7 +252,7 @@ pub fn html(diagnosis: &AxisDiagnosis, log: &str) -> String {
         true,
     ));
     tables(&mut out, diagnosis);
-    out.push_str("</html>\n");
+    let _ = writeln!(out, "<script>{SCRIPT}</script></html>");
     out
 }
 

@@ -1,13 +1,21 @@
 //! From fits to a verdict: which effects, how sure, what else it might be, how far the gap shrinks.
 
+mod closed_loop;
 mod comb;
+mod correlation;
+mod curve;
 mod decide;
 mod detectable;
 mod experiment;
 mod left_over;
+mod portrait;
 mod shrink;
 
+pub use closed_loop::{Yardstick, free_running, one_step};
+pub use correlation::{Correlation, bounds_hit, correlations};
+pub use curve::{CurvePoint, curve};
 pub use decide::{Decision, Found, SetProbability, Verdict, decide};
 pub use detectable::{Detectable, detectable};
 pub use experiment::experiment;
+pub use portrait::{Portrait, portrait};
 pub use shrink::{Shrink, ShrinkSignal, shrink};

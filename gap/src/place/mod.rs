@@ -7,5 +7,6 @@ mod spans;
 
 pub use bands::{Band, Spectrum};
 pub use blocks::shares as block_shares;
+pub(crate) use regimes::erfc;
 pub use regimes::{Regime, regimes};
 pub use spans::{Span, spans};

@@ -8,6 +8,8 @@ use crate::simulate::{Begin, Inputs, Physics, predict};
 
 /// A mistake is told when undoing it leaves less than this share of the misfit.
 const MENDED: f64 = 0.12;
+/// Share of the outputs' power that must be off before inputs are suspected.
+const OFF: f64 = 0.02;
 /// Shifts between torque and angle below this are delays of the loop [s].
 const LEAST_SHIFT_S: f64 = 2e-3;
 const RAD_PER_DEG: f64 = std::f64::consts::PI / 180.0;
@@ -62,7 +64,8 @@ pub fn faults(record: &Record, model: &ModelFile) -> Vec<String> {
     };
     let (nominal, ratios) = misfit(&record.inputs);
     let mut told = outputs(record, &physics, &ratios);
-    if nominal < 0.25 || !told.is_empty() {
+    told.extend(beyond(record, model));
+    if nominal < OFF || !told.is_empty() {
         return told;
     }
     let mut best = (MENDED * nominal, None);
@@ -78,6 +81,17 @@ pub fn faults(record: &Record, model: &ModelFile) -> Vec<String> {
     }
     told.extend(best.1.map(|name| format!("{name}: undone, the misfit falls from {nominal:.2} to {:.3}", best.0)));
     told
+}
+
+/// A rate that the platform was not made for: degrees, most likely.
+fn beyond(record: &Record, model: &ModelFile) -> Option<String> {
+    let most = model.config.range.rate_radps;
+    let peak = record.inputs.rate_radps.iter().fold(0.0, |peak: f64, rate| peak.max(rate.abs()));
+    (peak > most).then(|| {
+        format!(
+            "vehicle_rate_radps reaches {peak:.0} rad/s, beyond the model's range of {most:.0} rad/s: it seems to be in deg/s"
+        )
+    })
 }
 
 /// Mistakes of single outputs: factor against the prediction, and shift between torque and angle.

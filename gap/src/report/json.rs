@@ -4,10 +4,11 @@ use gimbal_plant::Effect;
 use serde_json::{Value, json};
 
 use crate::diagnose::Diagnosis;
-use crate::judge::{Verdict, experiment};
+use crate::judge::{Portrait, Verdict, Yardstick, experiment};
 
 /// The report of one log; `log` and `model` are their names.
 #[must_use]
+#[allow(clippy::too_many_lines, reason = "the schema, told in its order")]
 pub fn json(diagnosis: &Diagnosis, log: &str, model: &str) -> Value {
     let record = &diagnosis.record;
     let head = json!({
@@ -33,6 +34,12 @@ pub fn json(diagnosis: &Diagnosis, log: &str, model: &str) -> Value {
             "name": d.effect, "parameter": d.parameter, "unit": d.unit, "size": d.size
         })).collect::<Vec<_>>(),
         "ranking": [],
+        "left_over": null,
+        "parameter_correlations": diagnosis.correlations.iter().map(|own| json!({
+            "value": own.value, "other": own.other, "correlation": own.correlation
+        })).collect::<Vec<_>>(),
+        "bounds_hit": diagnosis.bounds_hit,
+        "not_looked_for": diagnosis.not_looked_for,
         "notes": [],
     });
     let Some(decision) = &diagnosis.decision else {
@@ -92,6 +99,11 @@ pub fn json(diagnosis: &Diagnosis, log: &str, model: &str) -> Value {
             notes.push("no improvement is shown: the interval of the reduction includes zero".to_owned());
         }
     }
+    report["shrink"]["free_running"] = diagnosis.free_running.iter().map(Yardstick::json).collect();
+    report["shrink"]["one_step"] = diagnosis.one_step.iter().map(Yardstick::json).collect();
+    if let Some(portrait) = &diagnosis.portrait {
+        report["left_over"] = left_over(portrait, diagnosis.record.first_s);
+    }
     let hidden: Vec<&str> = diagnosis.detectable.iter().filter(|d| d.size.is_none()).map(|d| d.effect).collect();
     if !hidden.is_empty() {
         notes.push(format!("this log cannot show: {}", hidden.join(", ")));
@@ -108,6 +120,20 @@ pub fn json(diagnosis: &Diagnosis, log: &str, model: &str) -> Value {
         .collect();
     report["notes"] = json!(notes);
     report
+}
+
+fn left_over(portrait: &Portrait, first_s: f64) -> Value {
+    json!({
+        "told": portrait.told(),
+        "signal": portrait.signal, "unit": portrait.unit, "rms": portrait.rms[0], "noise_floor": portrait.rms[1],
+        "block": portrait.block.as_ref().map(|(name, share)| json!({ "name": name, "share": share })),
+        "band": portrait.band.map(|band| json!({ "from_hz": band.from_hz, "to_hz": band.to_hz, "share": band.share })),
+        "regimes": portrait.regimes.iter().map(|r| json!({ "name": r.name, "share": r.share })).collect::<Vec<_>>(),
+        "span": { "from_s": first_s + portrait.span_s[0], "to_s": first_s + portrait.span_s[1] },
+        "burst_share": portrait.burst_share,
+        "depends_on": portrait.depends_on.iter().map(|(on, share)| json!({ "on": on, "share": share })).collect::<Vec<_>>(),
+        "nearest": portrait.nearest.iter().map(|(name, share)| json!({ "effect": name, "would_take": share })).collect::<Vec<_>>(),
+    })
 }
 
 fn places(diagnosis: &Diagnosis) -> Value {

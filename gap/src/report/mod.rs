@@ -3,14 +3,16 @@
 mod html;
 mod json;
 mod picture;
+mod pooled;
 mod text;
 
 pub use html::html;
 pub use json::json;
+pub use pooled::pooled;
 pub use text::text;
 
 /// Parts of a page, for reports of other kinds.
 pub(crate) mod page {
     pub(crate) use super::html::{STYLE, escaped};
-    pub(crate) use super::picture::{Line, plot};
+    pub(crate) use super::picture::{Line, SCRIPT, plot};
 }

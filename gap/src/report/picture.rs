@@ -1,12 +1,19 @@
-//! Lines in SVG: what a page needs and no more.
+//! Charts in SVG, complete without a script; `chart.js` lets them be zoomed.
 
 use std::fmt::Write;
 
-/// Width and height of a plot.
+/// Width and height of a chart, and what its axes take of them; `chart.js` has the same.
 const WIDTH: f64 = 960.0;
-const HEIGHT: f64 = 220.0;
+const HEIGHT: f64 = 240.0;
 const LEFT: f64 = 78.0;
+const RIGHT: f64 = 8.0;
+const TOP: f64 = 8.0;
 const BOTTOM: f64 = 26.0;
+/// Intervals of an axis, about.
+const INTERVALS: f64 = 6.0;
+
+/// The script of all charts of a page.
+pub(crate) const SCRIPT: &str = include_str!("chart.js");
 
 /// One line.
 pub(crate) struct Line<'a> {
@@ -15,56 +22,89 @@ pub(crate) struct Line<'a> {
     pub(crate) points: Vec<(f64, f64)>,
 }
 
+/// A band about a line: x, low, high.
+pub(crate) struct Tube<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) colour: &'a str,
+    pub(crate) points: Vec<(f64, f64, f64)>,
+}
+
 /// Lines over a common x; `logarithmic` on both axes.
 pub(crate) fn plot(title: &str, x_name: &str, lines: &[Line], marks: &[(f64, f64)], logarithmic: bool) -> String {
+    chart(title, x_name, lines, marks, logarithmic, None)
+}
+
+/// The same with a band.
+pub(crate) fn chart(
+    title: &str,
+    x_name: &str,
+    lines: &[Line],
+    marks: &[(f64, f64)],
+    logarithmic: bool,
+    tube: Option<&Tube>,
+) -> String {
     let map = |value: f64| if logarithmic { value.max(1e-300).log10() } else { value };
-    let all = || lines.iter().flat_map(|line| &line.points).filter(|point| point.0.is_finite() && point.1.is_finite());
+    let of_tube = tube.iter().flat_map(|tube| &tube.points).flat_map(|(x, low, high)| [(*x, *low), (*x, *high)]);
+    let all = lines.iter().flat_map(|line| line.points.iter().copied()).chain(of_tube);
+    let all: Vec<(f64, f64)> = all.filter(|point| point.0.is_finite() && point.1.is_finite()).collect();
     let range = |of: &dyn Fn(&(f64, f64)) -> f64| {
         let (low, high) =
-            all().fold((f64::MAX, f64::MIN), |(low, high), point| (low.min(of(point)), high.max(of(point))));
+            all.iter().fold((f64::MAX, f64::MIN), |(low, high), point| (low.min(of(point)), high.max(of(point))));
         if high > low { (low, high) } else { (low - 1.0, low + 1.0) }
     };
-    let (x0, x1) = range(&|point| map(point.0));
-    let (y0, y1) = range(&|point| map(point.1));
-    let x = |value: f64| LEFT + (map(value) - x0) / (x1 - x0) * (WIDTH - LEFT - 8.0);
-    let y = |value: f64| 8.0 + (y1 - map(value)) / (y1 - y0) * (HEIGHT - BOTTOM - 8.0);
-    let mut out =
-        format!("<figure><figcaption>{title}</figcaption><svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\">");
+    let ((x0, x1), (y0, y1)) = (range(&|point| map(point.0)), range(&|point| map(point.1)));
+    let (wide, tall) = (WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
+    let x = |value: f64| LEFT + (map(value) - x0) / (x1 - x0) * wide;
+    let y = |value: f64| TOP + (y1 - map(value)) / (y1 - y0) * tall;
+    let mut out = format!(
+        "<figure class=\"chart\" data-name=\"{x_name}\" data-view=\"{x0} {x1} {y0} {y1}\" data-log=\"{}\">\
+         <figcaption>{title}</figcaption><svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><g class=\"axes\">",
+        u8::from(logarithmic)
+    );
+    for tick in ticks(x0, x1, logarithmic) {
+        let at = LEFT + (tick - x0) / (x1 - x0) * wide;
+        let _ = write!(
+            out,
+            "<path d=\"M{at:.1} {TOP}V{}\" class=\"grid\"/><text x=\"{at:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+            HEIGHT - BOTTOM,
+            HEIGHT - 10.0,
+            label(tick, logarithmic)
+        );
+    }
+    for tick in ticks(y0, y1, logarithmic) {
+        let at = TOP + (y1 - tick) / (y1 - y0) * tall;
+        let _ = write!(
+            out,
+            "<path d=\"M{LEFT} {at:.1}H{}\" class=\"grid\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+            WIDTH - RIGHT,
+            LEFT - 4.0,
+            at + 4.0,
+            label(tick, logarithmic)
+        );
+    }
+    let _ = write!(
+        out,
+        "</g><svg x=\"{LEFT}\" y=\"{TOP}\" width=\"{wide}\" height=\"{tall}\" viewBox=\"{LEFT} {TOP} {wide} {tall}\">\
+         <g class=\"data\">"
+    );
     for (from, to) in marks {
         let (from, to) = (x(*from), x(*to));
         let _ = write!(
             out,
-            "<rect x=\"{from:.1}\" y=\"8\" width=\"{:.1}\" height=\"{}\" class=\"span\"/>",
-            (to - from).max(1.0),
-            HEIGHT - BOTTOM - 8.0
+            "<rect x=\"{from:.2}\" y=\"{TOP}\" width=\"{:.2}\" height=\"{tall}\" class=\"span\"/>",
+            (to - from).max(1.0)
         );
     }
-    for step in 0..=4 {
-        let share = f64::from(step) / 4.0;
-        let back = |low: f64, high: f64| {
-            let value = low + share * (high - low);
-            if logarithmic { 10_f64.powf(value) } else { value }
-        };
-        let (at_x, at_y) = (LEFT + share * (WIDTH - LEFT - 8.0), HEIGHT - BOTTOM - share * (HEIGHT - BOTTOM - 8.0));
-        let _ = write!(
-            out,
-            "<text x=\"{at_x:.0}\" y=\"{}\" text-anchor=\"middle\">{:.3}</text>",
-            HEIGHT - 10.0,
-            short(back(x0, x1))
-        );
-        let _ = write!(
-            out,
-            "<text x=\"{}\" y=\"{:.0}\" text-anchor=\"end\">{}</text>",
-            LEFT - 4.0,
-            at_y + 4.0,
-            short(back(y0, y1))
-        );
-        let _ = write!(out, "<path d=\"M{LEFT} {at_y:.1}H{WIDTH}\" class=\"grid\"/>");
+    if let Some(tube) = tube {
+        let there = tube.points.iter().map(|(at, low, _)| format!("{:.2} {:.2}", x(*at), y(*low)));
+        let back = tube.points.iter().rev().map(|(at, _, high)| format!("{:.2} {:.2}", x(*at), y(*high)));
+        let corners: Vec<String> = there.chain(back).collect();
+        let _ = write!(out, "<path d=\"M{}Z\" fill=\"{}\" class=\"tube\"/>", corners.join("L"), tube.colour);
     }
     for line in lines {
         let mut path = String::new();
         for (index, point) in line.points.iter().enumerate() {
-            let _ = write!(path, "{}{:.1} {:.1}", if index == 0 { "M" } else { "L" }, x(point.0), y(point.1));
+            let _ = write!(path, "{}{:.2} {:.2}", if index == 0 { "M" } else { "L" }, x(point.0), y(point.1));
         }
         let _ = write!(
             out,
@@ -72,29 +112,73 @@ pub(crate) fn plot(title: &str, x_name: &str, lines: &[Line], marks: &[(f64, f64
             line.colour, line.name
         );
     }
-    out.push_str("</svg><p class=\"legend\">");
-    for line in lines {
-        let _ = write!(out, "<span style=\"color:{}\">&#9632;</span> {} &nbsp; ", line.colour, line.name);
+    out.push_str("</g></svg></svg><p class=\"legend\">");
+    let told =
+        lines.iter().map(|line| (line.name, line.colour)).chain(tube.iter().map(|tube| (tube.name, tube.colour)));
+    for (name, colour) in told {
+        let _ = write!(out, "<span style=\"color:{colour}\">&#9632;</span> {name} &nbsp; ");
     }
     let _ = write!(out, "x: {x_name}</p></figure>");
     out
 }
 
-fn short(value: f64) -> String {
+/// Places of ticks: 1, 2 and 5 times a power of ten, or powers of ten themselves.
+fn ticks(low: f64, high: f64, logarithmic: bool) -> Vec<f64> {
+    let raw = (high - low) / INTERVALS;
+    let ten = 10_f64.powf(raw.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|one| one * ten).find(|step| *step >= raw).unwrap_or(raw);
+    let step = if logarithmic { step.max(1.0) } else { step };
+    let mut ticks = Vec::new();
+    let mut tick = (low / step).ceil() * step;
+    while tick <= high + 1e-9 * step && ticks.len() < 20 {
+        // no negative zero, no 0.30000000000000004
+        ticks.push((tick / step).round() * step + 0.0);
+        tick += step;
+    }
+    ticks
+}
+
+fn label(tick: f64, logarithmic: bool) -> String {
+    let value = if logarithmic { 10_f64.powf(tick) } else { tick };
     let size = value.abs();
-    if size != 0.0 && !(1e-2..1e4).contains(&size) { format!("{value:.1e}") } else { format!("{value:.2}") }
+    if size != 0.0 && !(1e-2..1e4).contains(&size) {
+        let text = format!("{value:.2e}");
+        text.replace(".00e", "e").replace("0e", "e")
+    } else {
+        format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned()
+    }
 }
 
 /// The largest and the smallest of each stretch, so that nothing between two points is lost.
 pub(super) fn thinned(values: &[f64], period_s: f64, first_s: f64, stretches: usize) -> Vec<(f64, f64)> {
-    let length = (values.len() / stretches).max(1);
+    let length = values.len().div_ceil(stretches).max(1);
+    if length == 1 {
+        return values.iter().enumerate().map(|(k, value)| (first_s + k as f64 * period_s, *value)).collect();
+    }
     values
         .chunks(length)
         .enumerate()
         .flat_map(|(index, chunk)| {
             let time_s = first_s + (index * length) as f64 * period_s;
-            let (low, high) = chunk.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
-            [(time_s, low), (time_s, high)]
+            let (mut low, mut high) = (0, 0);
+            for (place, value) in chunk.iter().enumerate() {
+                low = if *value < chunk[low] { place } else { low };
+                high = if *value > chunk[high] { place } else { high };
+            }
+            [low.min(high), low.max(high)].map(|place| (time_s + place as f64 * period_s, chunk[place]))
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{label, ticks};
+
+    #[test]
+    fn closed_form_ticks_stand_at_round_values() {
+        let labels = |low, high, log| -> Vec<String> { ticks(low, high, log).iter().map(|t| label(*t, log)).collect() };
+        assert_eq!(labels(0.0, 20.0, false), ["0", "5", "10", "15", "20"]);
+        assert_eq!(labels(-3.1e-4, 2.9e-4, false), ["-3e-4", "-2e-4", "-1e-4", "0", "1e-4", "2e-4"]);
+        assert_eq!(labels(-0.3, 2.7, true), ["1", "10", "100"]);
+    }
 }

@@ -31,11 +31,12 @@ pub fn text(diagnosis: &Diagnosis) -> String {
             named.join(" and "),
             decision.left_over[1]
         ),
-        Verdict::Unexplained => writeln!(
-            out,
-            "A gap that no effect of the library explains (it stands out by {:.0} standard deviations).",
-            decision.left_over[0]
-        ),
+        Verdict::Unexplained => {
+            let far = decision.left_over[0];
+            let told =
+                if far > 1.0 { format!(" (it stands out by {far:.0} standard deviations)") } else { String::new() };
+            writeln!(out, "A gap that no effect of the library explains{told}.")
+        }
         Verdict::CannotTell => writeln!(out, "Cannot tell: {} or one of these:", named.join(" and ")),
     };
     for set in &decision.alternatives {
@@ -49,6 +50,9 @@ pub fn text(diagnosis: &Diagnosis) -> String {
             100.0 * set.probability
         );
     }
+    if let Some(portrait) = &diagnosis.portrait {
+        let _ = writeln!(out, "  {}", portrait.told());
+    }
     if diagnosis.verdict() != Verdict::NoGap
         && let Some(shrink) = &diagnosis.shrink
     {
@@ -59,6 +63,16 @@ pub fn text(diagnosis: &Diagnosis) -> String {
                 "  {}: rms {:.3e} to {:.3e} {} on blocks not fitted, noise {:.1e}: {:.1} % of the gap gone ({low:.1} to {high:.1})",
                 signal.name, signal.before, signal.after, signal.unit, signal.noise_floor, signal.reduction_percent
             );
+        }
+        for own in &diagnosis.free_running {
+            let _ = writeln!(
+                out,
+                "  {}: the reference plant, running free, is off by {:.3e}, corrected {:.3e} {}",
+                own.name, own.before, own.after, own.unit
+            );
+        }
+        for hit in &diagnosis.bounds_hit {
+            let _ = writeln!(out, "  {hit}");
         }
         let _ = writeln!(
             out,

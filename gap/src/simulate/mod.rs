@@ -12,5 +12,6 @@ mod physics;
 mod run;
 
 pub use inputs::Inputs;
+pub(crate) use inputs::turned;
 pub use physics::{Friction, Hysteresis, Measurement, Physics, Ripple};
 pub use run::{Begin, Prediction, predict};

@@ -1,0 +1,108 @@
+//! Which fitted values move together, and which stand at the end of their range.
+
+use gimbal_plant::{Bound, Effect};
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::{Fit, Problem, drive, slices, solve};
+
+/// Correlations are told from this size on.
+const TOLD: f64 = 0.3;
+/// How near the end of its range a value stands at it, relative.
+const AT_END: f64 = 0.02;
+
+/// A fitted value and another one that moves with it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correlation {
+    /// Effect and parameter.
+    pub value: String,
+    /// Another one, or a nominal parameter.
+    pub other: String,
+    /// Of their errors, -1 to 1.
+    pub correlation: f64,
+}
+
+/// Correlations of the values of a fit, the strongest three of each.
+#[must_use]
+pub fn correlations(problem: &Problem, fit: &Fit) -> Vec<Correlation> {
+    let begin = problem.columns.begin;
+    let fixed = begin + problem.columns.nuisances;
+    let mut names: Vec<String> = (0..begin).map(|_| "the beginning".to_owned()).collect();
+    names.extend(problem.nuisances.iter().map(|own| own.name.to_owned()));
+    let (_, precision) = problem.chosen(&fit.set.0);
+    let mut weights = precision[..fixed].to_vec();
+    let mut own: Vec<usize> = Vec::new();
+    for (place, &index) in fit.set.0.iter().enumerate() {
+        let candidate = &problem.candidates[index];
+        for release in candidate.releases {
+            own.extend(problem.nuisances.iter().position(|nuisance| nuisance.name == *release).map(|at| begin + at));
+        }
+        let Some(entry) = Effect::from_name(candidate.effect).filter(|_| candidate.releases.is_empty()) else {
+            continue;
+        };
+        for (value, parameter) in entry.parameters().iter().enumerate() {
+            own.push(names.len());
+            names.push(format!("{} {}", candidate.effect, parameter.name));
+            let spread = 0.5 * parameter.low.abs().max(parameter.high.abs());
+            let logarithm = parameter.bound != Bound::Any && fit.values[place][value] > 0.0;
+            weights.push(if logarithm { 1.0 } else { spread.powi(-2) });
+        }
+    }
+    if names.len() != fixed + fit.sensitivities.len() {
+        return Vec::new();
+    }
+    let mut columns = slices(&problem.whitened[..fixed]);
+    columns.extend(slices(&fit.sensitivities));
+    let mut gram = DMatrix::zeros(columns.len(), columns.len());
+    gram.view_mut((0, 0), (fixed, fixed)).copy_from(&problem.gram.view((0, 0), (fixed, fixed)));
+    for place in fixed..columns.len() {
+        let products = drive(&columns, columns[place]);
+        gram.set_column(place, &products);
+        gram.set_row(place, &products.transpose());
+    }
+    let chosen: Vec<usize> = (0..columns.len()).collect();
+    let Some(solution) = solve(&gram, &DVector::zeros(columns.len()), &chosen, &weights) else { return Vec::new() };
+    let of = |a: usize, b: usize| {
+        let covariance = &solution.covariance;
+        covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).max(1e-300).sqrt()
+    };
+    own.iter()
+        .flat_map(|&value| {
+            let mut all: Vec<(usize, f64)> = (begin..columns.len())
+                .filter(|other| *other != value)
+                .map(|other| (other, of(value, other)))
+                .filter(|(_, correlation)| correlation.abs() > TOLD)
+                .collect();
+            all.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+            all.truncate(3);
+            all.into_iter().map(move |(other, correlation)| (value, other, correlation))
+        })
+        .map(|(value, other, correlation)| Correlation {
+            value: names[value].clone(),
+            other: names[other].clone(),
+            correlation,
+        })
+        .collect()
+}
+
+/// Values at the end of their range: of an effect's shape, or a nominal parameter's at its tolerance.
+#[must_use]
+pub fn bounds_hit(problem: &Problem, fit: &Fit) -> Vec<String> {
+    let mut told = Vec::new();
+    for (place, effect) in fit.effects.iter().enumerate() {
+        let Some(entry) = Effect::from_name(effect) else { continue };
+        for (parameter, value) in entry.parameters().iter().zip(&fit.values[place]).skip(entry.sizes()) {
+            let end = if *value <= parameter.low * (1.0 + AT_END) { parameter.low } else { parameter.high };
+            let beyond = *value <= parameter.low * (1.0 + AT_END) || *value >= parameter.high * (1.0 - AT_END);
+            if beyond && parameter.bound != Bound::Any {
+                told.push(format!("{effect} {} is {value:.2e}, its range ends at {end:.2e}", parameter.name));
+            }
+        }
+    }
+    let released: Vec<&str> = fit.set.0.iter().flat_map(|&index| problem.candidates[index].releases).copied().collect();
+    for (nuisance, shift) in problem.nuisances.iter().zip(&fit.shifts) {
+        if shift.abs() >= (1.0 - AT_END) * nuisance.tolerance && !released.contains(&nuisance.name) {
+            told.push(format!("{} is at the end of its tolerance", nuisance.name));
+        }
+    }
+    told
+}
