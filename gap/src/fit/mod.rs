@@ -15,7 +15,7 @@ pub use normal::Solution;
 pub(crate) use normal::{drive, slices, solve};
 pub use problem::{BLOCKS, Columns, Problem};
 pub(crate) use problem::{predicted, residual as raw_residual};
-pub use refine::{Fit, refine};
+pub use refine::{Effort, Fit, refine};
 pub use refit::{refit, without};
 pub use search::{Search, Set, search};
 pub use whiten::Whitener;

@@ -22,6 +22,10 @@ const SLOW_UNKNOWN: f64 = 0.05;
 /// Steps in which sensitivities to the beginning are taken, over those: inside the friction's clamp, off the stops.
 pub(crate) const STATE_STEP: f64 = 1e-3;
 
+/// Share of the best fit's excess put down to the formulation, and what power of the noise may stand out by.
+const FORMULATION: f64 = 0.01;
+const NOISE_KNOWN: f64 = 1.01;
+
 /// Which column is what.
 #[derive(Debug, Clone)]
 pub struct Columns {
@@ -163,6 +167,12 @@ impl<'a> Problem<'a> {
             noise,
             sigma,
         }
+    }
+
+    /// The noise that the best fit leaves, over that of the sensors: what is more than the noise is known to is put
+    /// down, in part, to how its effects are formulated.
+    pub(crate) fn formulation(&self, best_square: f64) -> f64 {
+        (FORMULATION * (best_square - NOISE_KNOWN * self.whitener.count() as f64)).max(1.0)
     }
 
     /// Whitened residual of a prediction.

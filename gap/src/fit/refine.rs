@@ -10,9 +10,6 @@ use super::pull::Pull;
 use super::{Problem, Set};
 use crate::simulate::{Begin, Physics, Prediction};
 
-/// Most iterations, and how often sensitivities to the nominal parameters are taken anew: thorough, and quick.
-const ITERATIONS: [usize; 2] = [12, 5];
-const REFRESHES: [usize; 2] = [4, 1];
 /// Steps of one iteration: as the equations have it, then damped more and more.
 const TRIALS: usize = 5;
 /// Damping after the first step that failed, over the precision of the priors.
@@ -76,15 +73,36 @@ impl Fit {
     }
 }
 
+/// How far a fit is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Far enough to be compared.
+    Quick,
+    /// To its end, by the sensitivities that the problem holds unless they mislead.
+    Full,
+    /// To its end, by the sensitivities there.
+    Thorough,
+}
+
+impl Effort {
+    fn iterations(self) -> usize {
+        if self == Self::Quick { 5 } else { 12 }
+    }
+
+    /// How often sensitivities to the nominal parameters may be taken anew.
+    fn refreshes(self) -> usize {
+        if self == Self::Quick { 1 } else { 4 }
+    }
+}
+
 /// Noise that the equations' being linear is taken for.
 pub(crate) fn linearised(problem: &Problem, square: f64) -> f64 {
     (LINEARISED * (square - problem.whitener.count() as f64)).max(1.0)
 }
 
-/// Fits a set from the values given, and from the nominal parameters and the beginning of another fit; a thorough
-/// one takes all sensitivities where it ends before it stops.
+/// Fits a set from the values given, and from the nominal parameters and the beginning of another fit.
 #[must_use]
-pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fit>, thorough: bool) -> Fit {
+pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fit>, effort: Effort) -> Fit {
     let hypothesis = Hypothesis::new(problem, set, start);
     let mut point = from.map_or_else(
         || Point {
@@ -102,16 +120,16 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
         outcome,
         linear: Linear::of(problem),
         fresh: false,
-        refreshes: REFRESHES[usize::from(!thorough)],
+        refreshes: effort.refreshes(),
         damping: 0.0,
     };
     let mut last = None;
-    let mut turned = false;
-    for _ in 0..ITERATIONS[usize::from(!thorough)] {
+    let mut turned = effort != Effort::Thorough;
+    for _ in 0..effort.iterations() {
         let Some((went, made)) = walk.go() else { break };
         last = Some(made);
         let doubtful = went == Went::Less || went == Went::Nowhere && !turned;
-        if thorough && doubtful && !walk.fresh && walk.refreshes > 0 {
+        if effort != Effort::Quick && doubtful && !walk.fresh && walk.refreshes > 0 {
             turned = true;
             walk.refresh();
         } else if went == Went::Nowhere {

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::normal::{drive, slices, solve};
 use super::pull::Pull;
+use super::refine::Effort;
 use super::refit::rebase;
 use super::{Fit, Problem, refine};
 use crate::record::{Record, Signal};
@@ -35,16 +36,34 @@ const PROMISE_OF_SHIFT: f64 = 3.0;
 /// Looks through the library.
 #[must_use]
 pub fn search(problem: &mut Problem) -> Search {
-    let null = polish(problem, refine(problem, &Set::default(), &[], None, true));
+    let null = refine(problem, &Set::default(), &[], None, Effort::Thorough);
     rebase(problem, &null);
+    let mut fits = sets(problem, &null);
+    if let Some(best) = fits.first() {
+        rebase(problem, best);
+    }
     let problem = &*problem;
+    // what is close to the best is brought to its end before it is judged
+    let gain = |fit: &Fit| null.square - fit.square;
+    let least = fits.first().map_or(0.0, |best| CLOSE * gain(best));
+    let close = |(place, fit): &(usize, &mut Fit)| *place < POLISHED && gain(fit) >= least;
+    let last: Vec<(usize, &mut Fit)> = fits.iter_mut().enumerate().filter(close).collect();
+    last.into_par_iter().for_each(|(_, fit)| polish(problem, fit));
+    sort(problem, &mut fits);
+    without_idle(problem, &mut fits);
+    let null = from_there(problem, null, &fits);
+    Search { null, fits }
+}
+
+/// Singles, and pairs and triples from the best of them, the best first.
+fn sets(problem: &Problem, null: &Fit) -> Vec<Fit> {
     let mut fits = Vec::new();
-    let first = best_by_effect(problem, extensions(problem, &null), SINGLES);
+    let first = best_by_effect(problem, extensions(problem, null), SINGLES);
     fits.par_extend(
         first
             .par_iter()
             .filter(|extension| promising(problem, extension))
-            .map(|extension| extend(problem, &null, extension)),
+            .map(|extension| extend(problem, null, extension)),
     );
     sort(problem, &mut fits);
     for size in 1..3 {
@@ -66,27 +85,15 @@ pub fn search(problem: &mut Problem) -> Search {
         }
         sort(problem, &mut fits);
     }
-    // what is close to the best is brought to its end before it is judged
-    let last: Vec<Fit> = fits.drain(..fits.len().min(POLISHED)).collect();
-    let last: Vec<Fit> = last.into_par_iter().map(|fit| polish(problem, fit)).collect();
-    fits.splice(0..0, last);
-    sort(problem, &mut fits);
-    without_idle(problem, &mut fits);
-    let null = from_there(problem, null, &fits);
-    Search { null, fits }
+    fits
 }
 
-/// The best fits may have found a way down that the nominal parameters missed: they start there once more.
+/// The best fit may have found a way down that the nominal parameters missed: they start there once more.
 fn from_there(problem: &Problem, null: Fit, fits: &[Fit]) -> Fit {
-    let again: Vec<Fit> =
-        fits.par_iter().take(2).map(|fit| refine(problem, &Set::default(), &[], Some(fit), true)).collect();
+    let Some(best) = fits.first() else { return null };
+    let again = refine(problem, &Set::default(), &[], Some(best), Effort::Full);
     let cost = |fit: &Fit| fit.square + fit.prior;
-    again.into_iter().filter(|fit| fit.volume.is_finite()).fold(
-        null,
-        |best, fit| {
-            if cost(&fit) < cost(&best) { fit } else { best }
-        },
-    )
+    if again.volume.is_finite() && cost(&again) < cost(&null) { again } else { null }
 }
 
 /// A set with a member that is zero within its error was only the better way down: the set without it starts there.
@@ -107,7 +114,9 @@ fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
             let (mut set, mut values) = (fit.set.clone(), fit.values.clone());
             set.0.remove(place);
             values.remove(place);
-            polish(problem, refine(problem, &set, &values, Some(fit), false))
+            let mut fit = refine(problem, &set, &values, Some(fit), Effort::Quick);
+            polish(problem, &mut fit);
+            fit
         })
         .collect();
     for fit in reduced {
@@ -121,31 +130,25 @@ fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
     sort(problem, fits);
 }
 
-/// Hypotheses that are fitted until nothing moves any more.
+/// Hypotheses that are fitted until nothing moves any more: so many, with at least this share of the best one's gain.
 const POLISHED: usize = 5;
+const CLOSE: f64 = 0.5;
 
-/// Fits on from where a fit ended, with sensitivities of its own, until it stands still.
-fn polish(problem: &Problem, fit: Fit) -> Fit {
-    let next = refine(problem, &fit.set, &fit.values, Some(&fit), true);
-    if next.volume.is_finite() { next } else { fit }
+/// Fits on from where a fit ended until it stands still.
+fn polish(problem: &Problem, fit: &mut Fit) {
+    let next = refine(problem, &fit.set, &fit.values, Some(fit), Effort::Full);
+    if next.volume.is_finite() {
+        *fit = next;
+    }
 }
 
 fn promising(problem: &Problem, extension: &Extension) -> bool {
     extension.gain > if problem.candidates[extension.index].releases.is_empty() { PROMISE } else { PROMISE_OF_SHIFT }
 }
 
-/// How much of the best fit's excess is put down to the formulation of its effects.
-const FORMULATION: f64 = 0.01;
-
-/// The noise that the best fit leaves, over that of the sensors.
-fn temper(problem: &Problem, fits: &[Fit]) -> f64 {
-    let best = fits.iter().map(|fit| fit.square).fold(f64::MAX, f64::min);
-    (FORMULATION * (best - problem.whitener.count() as f64)).max(1.0)
-}
-
 /// By evidence under the noise that the best of them leaves.
 fn sort(problem: &Problem, fits: &mut [Fit]) {
-    let temper = temper(problem, fits);
+    let temper = problem.formulation(fits.iter().map(|fit| fit.square).fold(f64::MAX, f64::min));
     fits.sort_by(|a, b| b.evidence(temper).total_cmp(&a.evidence(temper)));
 }
 
@@ -248,7 +251,7 @@ fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
     set.0.push(extension.index);
     let mut values = from.values.clone();
     values.push(problem.candidates[extension.index].values(&extension.amplitudes));
-    refine(problem, &set, &values, Some(from), false)
+    refine(problem, &set, &values, Some(from), Effort::Quick)
 }
 
 /// Cycles a revolution at which the torque residual has lines: a matched filter in rel.

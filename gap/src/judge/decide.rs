@@ -15,8 +15,6 @@ const COST_OF_SHIFT: f64 = 6.0;
 const BOUND_HIT: f64 = 20.0;
 /// A nominal parameter is an effect from this many tolerances on.
 const BEYOND: f64 = 1.15;
-/// Share of the best fit's excess put down to the formulation.
-const FORMULATION: f64 = 0.01;
 /// Nats that count as one in probabilities: a constant, and a share of what the best set gains.
 const SCALE: f64 = 2.0;
 const SCALE_SHARE: f64 = 1e-5;
@@ -104,9 +102,8 @@ pub struct Decision {
 #[must_use]
 #[allow(clippy::too_many_lines, reason = "one decision, told in its order")]
 pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Decision {
-    let count = problem.whitener.count() as f64;
     let best_square = search.fits.iter().map(|fit| fit.square).fold(search.null.square, f64::min);
-    let temper = (FORMULATION * (best_square - count)).max(1.0);
+    let temper = problem.formulation(best_square);
     let null_excess = (search.null.square - best_square).max(1.0);
     let score = |fit: &Fit| -> f64 {
         let mut score = fit.evidence(temper) - search.null.evidence(temper);

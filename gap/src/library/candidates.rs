@@ -19,6 +19,10 @@ pub struct Candidate {
     pub siblings: usize,
 }
 
+/// Limits of the torque that are tried, over the largest torque.
+const CEILINGS_SEEN: [f64; 6] = [1.0, 0.985, 0.965, 0.93, 0.85, 0.7];
+const CEILINGS_UNSEEN: [f64; 13] = [1.0, 0.99, 0.975, 0.96, 0.945, 0.93, 0.915, 0.9, 0.88, 0.855, 0.82, 0.77, 0.7];
+
 /// What the log offers to the effects.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Offer<'a> {
@@ -56,7 +60,6 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "mass_unbalance" => vec![released(effect, &["unbalance x", "unbalance y"])],
         // the pick-off shows the stop itself, and its steps
         "stop_angle" | "pickoff_quantisation" | "torque_scale" => Vec::new(),
-        "float_torque" if !offer.sees_gimbal => Vec::new(),
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
         "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),
@@ -67,8 +70,10 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "loop_delay" => secants(effect, &[3e-5, 2e-4].map(|delay_s| vec![delay_s])),
         "dead_zone" => secants(effect, &[3e-5, 1.2e-4, 5e-4].map(|width| vec![width])),
         "torque_saturation" => {
-            let peak = offer.peak_torque_nm;
-            secants(effect, &[1.0, 0.985, 0.965, 0.93, 0.85, 0.7].map(|share| vec![share * peak]))
+            // a measured torque shows its ceiling; a predicted one does not know where it will be
+            let shares: &[f64] = if offer.sees_torque { &CEILINGS_SEEN } else { &CEILINGS_UNSEEN };
+            let settings: Vec<Vec<f64>> = shares.iter().map(|share| vec![share * offer.peak_torque_nm]).collect();
+            secants(effect, &settings)
         }
         "torque_ripple" => {
             let one = |cycles: f64| {

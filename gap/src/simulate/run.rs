@@ -11,8 +11,14 @@ use super::{Inputs, Physics};
 const GRAVITY_MPS2: f64 = 9.806_65;
 /// Longest full step [s].
 const LONGEST_STEP_S: f64 = 1.2e-3;
-/// Short steps in a full one.
-const SHORT: u32 = 16;
+/// Into how many steps a full one is divided: where nothing turns around, where friction turns around slowly, and
+/// where it turns around at once or a stop or the motor's corner is near.
+const DIVISIONS: [u32; 3] = [1, 6, 16];
+const FULL_STEP: usize = 0;
+const SLOW_STEPS: usize = 1;
+const SHORT_STEPS: usize = 2;
+/// Change of w over a full step, over the slip rate, up to which friction turns around slowly.
+const SLOWLY: f64 = 0.25;
 
 /// Where a prediction begins.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,9 +139,9 @@ struct Machine<'a, const N: usize> {
     physics: &'a Physics,
     inputs: &'a Inputs,
     viscous: Viscous,
-    /// Full and short, off and on a stop.
-    free: [Step<N>; 2],
-    held: [Step<N>; 2],
+    /// By division, off and on a stop.
+    free: [Step<N>; 3],
+    held: [Step<N>; 3],
     full_steps: u32,
     command: [f64; N],
 }
@@ -147,7 +153,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         let full_steps = (period_s / LONGEST_STEP_S).ceil().max(1.0) as u32;
         let (off, on) = (Chain::new(physics, false), Chain::new(physics, true));
         let full_s = period_s / f64::from(full_steps);
-        let steps = |chain: &Chain| [Step::new(chain, full_s), Step::new(chain, full_s / f64::from(SHORT))];
+        let steps = |chain: &Chain| DIVISIONS.map(|parts| Step::new(chain, full_s / f64::from(parts)));
         let command = std::array::from_fn(|state| off.command[state]);
         let viscous = Viscous::new(&physics.config.bearing);
         Self { physics, inputs, viscous, free: steps(&off), held: steps(&on), full_steps, command }
@@ -218,7 +224,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         Running { x, u, w, friction, zeta, hysteresis: begin.hysteresis, stop: 0 }
     }
 
-    /// One row: full steps where nothing turns around, short ones elsewhere.
+    /// One row: full steps where nothing turns around, shorter ones elsewhere.
     #[inline(always)]
     fn row(&self, state: &mut Running<N>, now: &Now, next: &Now) {
         let mut from = *now;
@@ -228,33 +234,36 @@ impl<'a, const N: usize> Machine<'a, N> {
             } else {
                 now.toward(next, f64::from(part) / f64::from(self.full_steps))
             };
-            if self.turns(state, &to) {
-                for short in 1..=SHORT {
-                    let end = from.toward(&to, f64::from(short) / f64::from(SHORT));
-                    self.step(state, &end, 1);
-                    self.contact(state);
-                }
-            } else {
-                self.step(state, &to, 0);
+            let division = self.division(state, &to);
+            let parts = DIVISIONS[division];
+            for part in 1..=parts {
+                let end = if part == parts { to } else { from.toward(&to, f64::from(part) / f64::from(parts)) };
+                self.step(state, &end, division);
                 self.contact(state);
             }
             from = to;
         }
     }
 
-    /// Whether friction may turn around before `to`, or the float is near a stop.
+    /// How finely to go to `to`.
     #[inline(always)]
-    fn turns(&self, state: &Running<N>, to: &Now) -> bool {
-        let near = 3.0 * self.physics.config.bearing.slip_rate_radps;
+    fn division(&self, state: &Running<N>, to: &Now) -> usize {
+        let slip = self.physics.config.bearing.slip_rate_radps;
+        let near = 3.0 * slip;
         let ahead = to.rate - state.x[PHI_RATE];
         let builds_up = self.physics.friction.presliding_rad > 0.0 && (state.zeta - state.w.signum()).abs() > 1e-3;
-        state.w.abs() < near
-            || ahead.abs() < near
-            || ahead * state.w < 0.0
-            || builds_up
+        let corner = builds_up
             || state.stop != 0
             || state.x[THETA].abs() > 0.95 * self.physics.config.gyro.stop_angle_rad
-            || self.motor_bends(state)
+            || self.motor_bends(state);
+        let turns = state.w.abs() < near || ahead.abs() < near || ahead * state.w < 0.0;
+        if corner || turns && (ahead - state.w).abs() > SLOWLY * slip {
+            SHORT_STEPS
+        } else if turns {
+            SLOW_STEPS
+        } else {
+            FULL_STEP
+        }
     }
 
     /// Whether the motor's torque is near a corner of its characteristic.
@@ -269,13 +278,13 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     #[inline(always)]
-    fn step(&self, state: &mut Running<N>, to: &Now, short: usize) {
-        let step = if state.stop == 0 { &self.free[short] } else { &self.held[short] };
+    fn step(&self, state: &mut Running<N>, to: &Now, division: usize) {
+        let step = if state.stop == 0 { &self.free[division] } else { &self.held[division] };
         let mut x = step.free(&state.x, &state.u);
         let mut guess = x;
         add(&mut guess, &step.end[0], state.u[0]);
         let ahead = to.rate - guess[PHI_RATE];
-        let turned = 0.5 * self.step_s(short) * (state.w + ahead);
+        let turned = 0.5 * self.step_s(division) * (state.w + ahead);
         let hysteresis = self.hysteresis_after(state.hysteresis, turned);
         let others = self.others(to, &guess, hysteresis);
         let float_nm = self.float_nm(to);
@@ -292,7 +301,7 @@ impl<'a, const N: usize> Machine<'a, N> {
         let rate = to.rate - x[PHI_RATE];
         let level = self.level(to, ahead);
         let (friction, mean, zeta) = if self.physics.friction.presliding_rad > 0.0 {
-            self.build_up(state, [rate, brake, level, self.step_s(short)])
+            self.build_up(state, [rate, brake, level, self.step_s(division)])
         } else {
             self.clamp(state, rate, brake, level)
         };
@@ -316,9 +325,8 @@ impl<'a, const N: usize> Machine<'a, N> {
     }
 
     #[inline(always)]
-    fn step_s(&self, short: usize) -> f64 {
-        let full_s = self.inputs.period_s / f64::from(self.full_steps);
-        if short == 0 { full_s } else { full_s / f64::from(SHORT) }
+    fn step_s(&self, division: usize) -> f64 {
+        self.inputs.period_s / f64::from(self.full_steps * DIVISIONS[division])
     }
 
     /// The clamp, implicit: `w + brake level clamp(w / w_s) = rate`; and its mean where the step crosses a corner.
