@@ -22,8 +22,9 @@ impl<N: Number> Arc<N> {
             return N::ZERO;
         }
         let mut root = (-self.start).ratio(self.end - self.start);
+        let bend = self.bend();
         for _ in 0..STEPS {
-            let (value, slope) = (self.at(root), self.slope(root));
+            let (value, slope) = (self.at(root, bend), self.slope_at(root, bend));
             // On a falling or flat arc the chord's root stands.
             if slope > value.abs() {
                 root = (root - value.ratio(slope)).most(N::ZERO).least(N::ONE);
@@ -33,20 +34,23 @@ impl<N: Number> Arc<N> {
     }
 
     /// Change per period at `share` of the period.
-    #[inline(never)]
     pub(crate) fn slope(&self, share: N) -> N {
-        let (quadratic, cubic) = self.bend();
+        self.slope_at(share, self.bend())
+    }
+
+    #[inline(always)]
+    fn slope_at(&self, share: N, (quadratic, cubic): (N, N)) -> N {
         let twice = (quadratic + cubic.times(share)).times(share);
         self.start_slope + twice + twice + cubic.times(share).times(share)
     }
 
-    #[inline(never)]
-    fn at(&self, share: N) -> N {
-        let (quadratic, cubic) = self.bend();
+    #[inline(always)]
+    fn at(&self, share: N, (quadratic, cubic): (N, N)) -> N {
         self.start + (self.start_slope + (quadratic + cubic.times(share)).times(share)).times(share)
     }
 
     /// Factors of the share's square and cube.
+    #[inline(always)]
     fn bend(&self) -> (N, N) {
         let chord = self.end - self.start;
         let start_lag = chord - self.start_slope;

@@ -15,7 +15,7 @@ use crate::build::modes::{BLOCKS, Modes, PHYSICAL};
 use crate::build::plant::Plant;
 use crate::build::poles::ORDER;
 use crate::number::Number;
-use crate::row::{Row, ScaledRow};
+use crate::row::{Row, ScaledRow, sums};
 use crate::stored::stored;
 use crate::units::Units;
 
@@ -147,8 +147,38 @@ impl<N: Number> Law<N> {
     }
 
     /// Advances the modes by one period. Gives theta.
+    ///
+    /// In fixed point as a function of its own: among all else, its sums of two words do not keep to the registers.
     #[inline(always)]
     pub(crate) fn advance(&self, modes: &mut State<N>, heads: &Heads<N>, torque_change: N) -> N {
+        if N::HAS_SCALES {
+            self.advance_apart(modes, torque_change)
+        } else {
+            self.advance_here(modes, heads, torque_change)
+        }
+    }
+
+    #[inline(never)]
+    fn advance_apart(&self, modes: &mut State<N>, torque_change: N) -> N {
+        let [pairs @ .., last] = modes;
+        let head = N::head(*last);
+        *last = N::kept(*last, head) + self.single.transition * head + self.single.drive * torque_change;
+        let [.., row, gain] = self.gyro_angle.coefs;
+        let mut theta = row * head + gain * torque_change;
+        let blocks = core::hint::black_box(self.blocks.as_slice());
+        for ((block, x), row) in blocks.iter().zip(pairs.chunks_exact_mut(2)).zip(self.gyro_angle.coefs.chunks_exact(2))
+        {
+            let [a, b, c, d] = block.transition;
+            let head = [N::head(x[0]), N::head(x[1])];
+            theta = theta + row[0] * head[0] + row[1] * head[1];
+            x[0] = N::kept(x[0], head[0]) + a * head[0] + b * head[1] + block.drive[0] * torque_change;
+            x[1] = N::kept(x[1], head[1]) + d * head[1] + c * head[0] + block.drive[1] * torque_change;
+        }
+        N::head(theta)
+    }
+
+    #[inline(always)]
+    fn advance_here(&self, modes: &mut State<N>, heads: &Heads<N>, torque_change: N) -> N {
         let heads = Heads(N::as_words(heads.0));
         let (x, head) = (&mut modes[ORDER - 1], heads.0[ORDER - 1]);
         *x = N::kept(*x, head) + self.single.transition * head + self.single.drive * torque_change;
@@ -193,6 +223,23 @@ impl<N: Number> Instant<N> {
             entry: core::array::from_fn(|i| {
                 ScaledRow::build(core::array::from_fn(|j| entry[j][i]), physical, units.modes[i])
             }),
+        }
+    }
+}
+
+impl<N: Number> Instant<N> {
+    /// y less `T_d`, then `z_i`.
+    pub(crate) fn motor(&self, heads: &Heads<N>) -> [N; 6] {
+        let mut motor = [N::Wide::default(); 6];
+        sums(&self.motor, heads.modes(), &mut motor);
+        core::array::from_fn(|i| N::narrow_shifted(motor[i], self.motor[i].shift))
+    }
+
+    /// The modes of a physical state.
+    pub(crate) fn enter(&self, modes: &mut State<N>, physical: &[N; PHYSICAL]) {
+        sums(&self.entry, physical, modes);
+        for (mode, row) in modes.iter_mut().zip(&self.entry) {
+            *mode = N::widen_shifted(*mode, row.shift);
         }
     }
 }

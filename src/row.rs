@@ -65,13 +65,30 @@ impl<N: Number, const L: usize> ScaledRow<N, L> {
     }
 
     /// The sum, rounded once.
+    #[inline(always)]
     pub(crate) fn at(&self, signals: &[N; L]) -> N {
-        N::narrow_shifted(sum_of_products(&self.coefs, signals), self.shift)
+        N::narrow_shifted(self.sum(signals), self.shift)
     }
 
     /// The sum with all its bits, to be added to a state.
+    #[inline(always)]
     pub(crate) fn increment(&self, signals: &[N; L]) -> N::Wide {
-        N::widen_shifted(sum_of_products(&self.coefs, signals), self.shift)
+        N::widen_shifted(self.sum(signals), self.shift)
+    }
+
+    #[inline(always)]
+    fn sum(&self, signals: &[N; L]) -> N::Wide {
+        // A call takes more than two products.
+        if L > 2 { sum_of_products(&self.coefs, signals) } else { Row { coefs: self.coefs }.increment(signals) }
+    }
+}
+
+/// The sums of several rows for the same signals, before their shifts: the signals stay in registers from row to row.
+#[inline(never)]
+pub(crate) fn sums<N: Number, const L: usize>(rows: &[ScaledRow<N, L>], signals: &[N; L], to: &mut [N::Wide]) {
+    // A compiler that knew how many there are would unroll them all.
+    for (sum, row) in core::hint::black_box(to).iter_mut().zip(core::hint::black_box(rows)) {
+        *sum = Row { coefs: row.coefs }.increment(signals);
     }
 }
 

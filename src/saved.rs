@@ -73,7 +73,7 @@ impl<N: Number> Law<N> {
         writer.put(&self.identity.to_le_bytes());
         let regime = match state.regime {
             Regime::New => 0,
-            Regime::Free => 1,
+            Regime::Free | Regime::Unusual => 1,
             Regime::Held(Side::Positive) => 2,
             Regime::Held(Side::Negative) => 3,
             Regime::Released => 4,
@@ -110,7 +110,7 @@ impl<N: Number> Law<N> {
         let mut state = self.start();
         state.regime = match reader.take::<1>() {
             [0] => Regime::New,
-            [1] => Regime::Free,
+            [1] => self.off_stops(),
             [2] => Regime::Held(Side::Positive),
             [3] => Regime::Held(Side::Negative),
             [4] => Regime::Released,

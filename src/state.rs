@@ -46,6 +46,8 @@ pub struct State<N: Number> {
 pub(crate) enum Regime {
     /// The gyro is off its stops.
     Free,
+    /// It is, of a law with held inputs or cross coupling: off the straight path.
+    Unusual,
     /// It has left a stop within the last period.
     Released,
     /// The gyro sits on this stop.
@@ -57,7 +59,7 @@ pub(crate) enum Regime {
 impl Regime {
     pub(crate) fn stop(self) -> Stop {
         match self {
-            Self::Free | Self::Released | Self::New => Stop::Free,
+            Self::Free | Self::Unusual | Self::Released | Self::New => Stop::Free,
             Self::Held(Side::Positive) => Stop::Positive,
             Self::Held(Side::Negative) => Stop::Negative,
         }

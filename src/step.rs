@@ -8,9 +8,9 @@
 //!
 //! Torques over a period are the sums of its two ends, twice their mean; the loop's factors are halves for it.
 
+mod aside;
 mod held;
 mod output;
-mod unusual;
 
 use crate::faults::Faults;
 use crate::free::Heads;
@@ -39,6 +39,8 @@ pub(super) struct Moved<N: Number> {
     /// phi' as the gyro senses it: with the drift that cross coupling adds.
     pub(super) sensed_rate: N,
     pub(super) gyro_angle: N,
+    /// Vehicle rate at this row, as the gyro senses the stable member's.
+    pub(super) vehicle_rate: N,
 }
 
 impl<N: Number> Law<N> {
@@ -57,18 +59,20 @@ impl<N: Number> Law<N> {
     pub fn advance(&self, state: &mut State<N>, input: &Input<N>) -> Faults {
         let mut faults = state.lasting;
         self.guard.admit(&mut state.row, input, &mut faults);
-        let acting = if self.unusual {
-            let (acting, beyond) = self.act_unusually(state);
-            faults |= beyond;
-            acting.taken_apart()
-        } else {
-            self.act(state, &mut faults)
-        };
-        let moved = if state.regime == Regime::Free || Self::resume(state) {
+        // One question for everything rare; what it leads to may lead back.
+        let moved = 'moved: {
+            let acting = if state.regime == Regime::Free {
+                self.act(state, &mut faults)
+            } else {
+                let aside = self.act_aside(state);
+                faults |= aside.faults;
+                if aside.is_held {
+                    faults |= self.move_held(state, &aside.acting);
+                    break 'moved Moved::told(state, aside.acting.vehicle_rate);
+                }
+                aside.acting.taken_apart()
+            };
             self.move_free(state, &acting, &mut faults)
-        } else {
-            faults |= self.move_held(state, acting.taken_apart());
-            Moved::told(state)
         };
 
         let mut gimbal_angle = N::head(moved.gimbal_angle);
@@ -81,7 +85,7 @@ impl<N: Number> Law<N> {
         state.gimbal_angle = gimbal_angle;
         state.gyro_angle = moved.gyro_angle;
         state.sensed_rate = moved.sensed_rate;
-        state.relative_rate = acting.vehicle_rate - moved.sensed_rate.shift_down(self.rate_shift);
+        state.relative_rate = moved.vehicle_rate - moved.sensed_rate.shift_down(self.rate_shift);
         state.faults = faults;
         faults
     }
@@ -126,9 +130,9 @@ impl<N: Number> Law<N> {
         state.torque = torque;
         if gyro_angle.beyond(self.stop_limit) {
             *faults |= self.meet_stop(state, gimbal_angle, sensed_rate, gyro_angle);
-            return Moved::told(state);
+            return Moved::told(state, acting.vehicle_rate);
         }
-        Moved { gimbal_angle, sensed_rate, gyro_angle }
+        Moved { gimbal_angle, sensed_rate, gyro_angle, vehicle_rate: acting.vehicle_rate }
     }
 
     /// Friction's mean share of its level over the period, when phi' would become `quiet_rate` without friction and
@@ -149,8 +153,8 @@ impl<N: Number> Law<N> {
     }
 }
 
-// What functions off the straight path take and give passes through memory. Taken apart, it does so there alone: the
-// straight path keeps its own in registers.
+// What functions off the straight path give passes through memory. Taken apart, it does so there alone: the straight path
+// keeps its own in registers.
 
 impl<N: Number> Acting<N> {
     #[inline(always)]
@@ -163,7 +167,12 @@ impl<N: Number> Acting<N> {
 impl<N: Number> Moved<N> {
     /// What a function off the straight path has written into the state.
     #[inline(always)]
-    fn told(state: &State<N>) -> Self {
-        Self { gimbal_angle: state.held.gimbal_angle, sensed_rate: state.sensed_rate, gyro_angle: state.gyro_angle }
+    fn told(state: &State<N>, vehicle_rate: N) -> Self {
+        Self {
+            gimbal_angle: state.held.gimbal_angle,
+            sensed_rate: state.sensed_rate,
+            gyro_angle: state.gyro_angle,
+            vehicle_rate,
+        }
     }
 }

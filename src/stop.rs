@@ -17,15 +17,18 @@ pub(crate) mod release;
 
 use crate::build::plant::{LAGS, Plant};
 use crate::number::Number;
-use crate::row::ScaledRow;
+use crate::row::{Row, ScaledRow};
 use crate::stored::stored;
 use crate::units::Units;
 
 /// What shapes the motor torque on a stop: y, then `z_i`.
 pub(crate) type Motor<N> = [N; LAGS + 1];
 
-/// Motor, theta on the stop, and the disturbance torque.
-type Signals<N> = [N; LAGS + 3];
+/// Changes of phi' and of phi over a period, before their shifts, without what the disturbance torque and phi' make.
+pub(crate) struct Quiet<N: Number> {
+    rate: N::Wide,
+    angle: N::Wide,
+}
 
 /// State on a stop.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -114,21 +117,26 @@ impl<N: Number> Law<N> {
         self.motor_torque(&Self::motor(state), stop)
     }
 
-    /// phi' at the end of the period under the torque `torque`.
-    pub(crate) fn gimbal_rate(&self, state: &State<N>, stop: N, torque: N) -> N {
+    /// What a period does, whatever its torque.
+    pub(crate) fn quiet(&self, state: &State<N>, stop: N) -> Quiet<N> {
         let [y, a, b, c, d, e] = Self::motor(state);
-        N::narrow(state.gimbal_rate + self.gimbal_rate_change.increment(&[y, a, b, c, d, e, stop, torque]))
+        let signals = [y, a, b, c, d, e, stop];
+        let ([rates @ .., _], [angles @ .., _, _]) = (&self.gimbal_rate_change.coefs, &self.gimbal_angle_change.coefs);
+        Quiet { rate: Row { coefs: *rates }.increment(&signals), angle: Row { coefs: *angles }.increment(&signals) }
+    }
+
+    /// phi' at the end of the period under the torque `torque`.
+    pub(crate) fn gimbal_rate(&self, state: &State<N>, quiet: &Quiet<N>, torque: N) -> N::Wide {
+        let [.., coef] = self.gimbal_rate_change.coefs;
+        state.gimbal_rate + N::widen_shifted(quiet.rate + coef * torque, self.gimbal_rate_change.shift)
     }
 
     /// Advances the state by one period under the torque `torque`.
-    pub(crate) fn advance(&self, state: &mut State<N>, stop: N, torque: N) {
-        let [y, a, b, c, d, e] = Self::motor(state);
-        let signals: Signals<N> = [y, a, b, c, d, e, stop, torque];
-        let rate = N::narrow(state.gimbal_rate);
-        state.gimbal_angle = N::confine(
-            state.gimbal_angle + self.gimbal_angle_change.increment(&[y, a, b, c, d, e, stop, torque, rate]),
-        );
-        state.gimbal_rate = N::confine(state.gimbal_rate + self.gimbal_rate_change.increment(&signals));
+    pub(crate) fn advance(&self, state: &mut State<N>, quiet: &Quiet<N>, stop: N, torque: N) {
+        let [.., of_torque, of_rate] = self.gimbal_angle_change.coefs;
+        let angle = quiet.angle + of_torque * torque + of_rate * N::narrow(state.gimbal_rate);
+        state.gimbal_angle = N::confine(state.gimbal_angle + N::widen_shifted(angle, self.gimbal_angle_change.shift));
+        state.gimbal_rate = N::confine(self.gimbal_rate(state, quiet, torque));
         state.integrator = N::confine(state.integrator + self.integrator_change.increment(&[stop]));
         for (lag, decay) in state.lags.iter_mut().zip(&self.lag_decay) {
             let head = N::head(*lag);

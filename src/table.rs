@@ -27,6 +27,7 @@ impl<N: Number> Chord<N> {
 const OCTAVES: i32 = 8;
 /// A power of two, so that a mask keeps every index inside.
 const CHORDS: usize = 16 * OCTAVES.unsigned_abs() as usize;
+const LAST: i32 = 16 * OCTAVES - 1;
 
 /// A rising concave function on the eight octaves below a largest argument.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +75,7 @@ impl<N: Number> PowerTable<N> {
 /// Segment of an argument in a [`PowerTable`] whose first one is `first`.
 #[inline(always)]
 pub(crate) fn segment<N: Number>(first: i32, argument: N) -> u32 {
-    (argument.sixteenth() - first).max(0).unsigned_abs()
+    (argument.sixteenth() - first).clamp(0, LAST).unsigned_abs()
 }
 
 /// Square root of a mantissa of two octaves, 32 chords each, to 3.1e-5.
@@ -86,7 +87,7 @@ pub struct SqrtTable<N: Number> {
 stored!([N: Number] SqrtTable<N> { chords });
 
 impl<N: Number> SqrtTable<N> {
-    /// `lowest` is the smallest mantissa: 1 for `f32`, 1/4 for `Fixed`.
+    /// Of mantissas from [`Number::SQRT_LOWEST`] on, [`Number::SQRT_GAIN`] times the root.
     pub(crate) fn build() -> Self {
         let mut chords = [Chord::default(); 64];
         for (segment, chord) in chords.iter_mut().enumerate() {

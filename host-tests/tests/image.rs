@@ -106,7 +106,7 @@ fn closed_form_every_damaged_byte_is_found() {
             bytes[place] ^= bit;
             let expected = match place {
                 0..4 => ImageError::NotAnImage,
-                4 => ImageError::OtherVersion(1 ^ bit),
+                4 => ImageError::OtherVersion(bytes[place] ^ bit),
                 5 => ImageError::OtherLaw,
                 6 => ImageError::OtherNumberSystem,
                 _ => ImageError::Damaged,

@@ -58,7 +58,7 @@ impl<const L: usize> Coefs<L> {
                 let level = &law.level;
                 let ([s0, s1], [a0, a1]) = (level.static_load.coefs, level.axial_load.coefs);
                 let (static_preload, axial_preload) = (level.static_preload, level.axial_preload);
-                [level.largest_radial, s0, s1, static_preload, a0, a1, axial_preload, level.viscous_low]
+                [f32::from_bits(level.largest_radial), s0, s1, static_preload, a0, a1, axial_preload, level.viscous_low]
             }),
             viscous_break: laws.map(|law| law.level.viscous_break),
             friction: side_by_side(laws, |law| [law.friction.slip_rate, law.friction.steepness]),
@@ -82,7 +82,7 @@ impl<const L: usize> Coefs<L> {
     /// All bits for a lane that may take the straight path.
     pub(super) fn may(&self, law: &Law<f32>, state: &State<f32>) -> u32 {
         let is_like_others = !law.cross_coupling && law.held_inputs == self.held_inputs;
-        if is_like_others && state.regime == Regime::Free { u32::MAX } else { 0 }
+        if is_like_others && matches!(state.regime, Regime::Free | Regime::Unusual) { u32::MAX } else { 0 }
     }
 
     #[inline(always)]
@@ -100,7 +100,7 @@ impl<const L: usize> Coefs<L> {
     pub(super) fn level(&self, lane: usize) -> level::Law<f32> {
         let [largest_radial, s0, s1, static_preload, a0, a1, axial_preload, viscous_low] = at(&self.level, lane);
         level::Law {
-            largest_radial,
+            largest_radial: largest_radial.to_bits(),
             static_load: Row { coefs: [s0, s1] },
             axial_load: Row { coefs: [a0, a1] },
             static_preload,

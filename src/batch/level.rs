@@ -100,8 +100,8 @@ impl<const L: usize> Levels<L> {
         for lane in 0..L {
             let law = coefs.level(lane);
             let radial = self.sqrt.at(lane, self.mantissa[lane]) * self.scale[lane];
-            self.table_end[lane] = u32::from(radial > law.largest_radial);
-            let radial = radial.least(law.largest_radial);
+            self.table_end[lane] = u32::from(law.ends_before(radial));
+            let radial = radial.least(f32::from_bits(law.largest_radial));
             let axial = rows.accel_z_mps2[lane].abs();
             self.static_load[lane] = law.static_load(axial, radial);
             self.load[lane] = law.load(axial, radial);

@@ -15,7 +15,8 @@ use crate::units::Units;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub(crate) struct Law<N: Number> {
-    pub(crate) largest_radial: N,
+    /// Largest radial acceleration, as bits: values without a sign are in the order of theirs.
+    pub(crate) largest_radial: u32,
     /// `F_s` of `|a_z|` and `A_r`, less its part from the preload.
     pub(crate) static_load: Row<N, 2>,
     /// (6.1)'s load, likewise.
@@ -85,7 +86,7 @@ impl<N: Number> Law<N> {
             }),
         };
         let law = Self {
-            largest_radial: N::quantise(range.radial_accel_mps2, units.accel),
+            largest_radial: N::quantise(range.radial_accel_mps2, units.accel).to_bits(),
             static_load: Row::build([fa * share, fr * share], accel, static_scale),
             axial_load: Row::build(axial_load, accel, load_scale),
             static_preload: N::quantise(smallest_static, static_scale).widen(),
@@ -103,8 +104,7 @@ impl<N: Number> Law<N> {
     pub(crate) fn at(&self, tables: &Tables<N>, accel: [N; 3], rate: N, faults: &mut Faults) -> N {
         let [accel_x, accel_y, accel_z] = accel;
         let mut radial = accel_x.hypot(accel_y, &tables.sqrt);
-        // Of values without a sign the bits are in the same order, and no flag of a float has to be fetched.
-        if radial.to_bits() > self.largest_radial.to_bits() {
+        if self.ends_before(radial) {
             let end;
             (radial, end) = self.end_of_tables();
             *faults |= end;
@@ -117,11 +117,17 @@ impl<N: Number> Law<N> {
         power.times(load).times_power(self.shift) + viscous
     }
 
+    /// Whether a radial acceleration lies beyond the tables.
+    #[inline(always)]
+    pub(crate) fn ends_before(&self, radial: N) -> bool {
+        radial.to_bits() > self.largest_radial
+    }
+
     /// The largest radial acceleration and its bit: by a branch, for selected they would be on the straight path.
     #[cold]
     #[inline(never)]
     fn end_of_tables(&self) -> (N, Faults) {
-        core::hint::black_box((self.largest_radial, Faults::TABLE_END))
+        core::hint::black_box((N::from_bits(self.largest_radial), Faults::TABLE_END))
     }
 
     /// `F_s`.

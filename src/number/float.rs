@@ -13,16 +13,15 @@ use crate::table::SqrtTable;
 
 const SIGN: u32 = 1 << 31;
 const EXPONENT_SHIFT: u32 = 23;
-const ONE_BITS: u32 = 127 << EXPONENT_SHIFT;
 
-/// A sum of two squares, `m 4^k` with `1 <= m < 4`.
+/// A sum of two squares, `m 4^k` with `1/2 <= m < 2`.
 #[derive(Clone, Copy)]
 pub(crate) struct Square {
     /// Segment of m in its table, in the lowest six bits.
     pub(crate) segment: u32,
     /// m
     pub(crate) mantissa: f32,
-    /// 2^k
+    /// 2^(k - 64), or 0 for a sum below 2^-125; the table's root has the rest.
     pub(crate) power: f32,
 }
 
@@ -30,12 +29,13 @@ impl Square {
     #[inline(always)]
     pub(crate) fn of_sum(one: f32, other: f32) -> Self {
         let square = one * one + other * other;
-        // One added to the exponent makes its lowest bit the parity that m keeps.
-        let bits = square.to_bits().wrapping_add(1 << EXPONENT_SHIFT);
+        // The exponent's lowest bit is the parity that m keeps.
+        let bits = square.to_bits();
+        // Above it comes the exponent of 1/2: all ones, and one in bit 30.
         Self {
             segment: bits >> 18,
-            mantissa: f32::from_bits((bits & 0x00FF_FFFF) + ONE_BITS),
-            power: f32::from_bits(((bits >> 24) + 63) << EXPONENT_SHIFT),
+            mantissa: f32::from_bits((bits | 0xFF00_0000).wrapping_add(1 << 30)),
+            power: f32::from_bits((bits >> 24) << EXPONENT_SHIFT),
         }
     }
 }
@@ -49,8 +49,8 @@ impl Number for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
     const HALF_BIT: f32 = 0.0;
-    const SQRT_LOWEST: f64 = 1.0;
-    const SQRT_GAIN: f64 = 1.0;
+    const SQRT_LOWEST: f64 = 0.5;
+    const SQRT_GAIN: f64 = 18_446_744_073_709_551_616.0;
     const HAS_SCALES: bool = false;
     const TAG: u8 = b'f';
 
@@ -144,7 +144,7 @@ impl Number for f32 {
         f32::from_bits(self.to_bits() & !SIGN)
     }
 
-    /// With `s = m 4^k`, `1 <= m < 4`: the table's chord at m, times 2^k.
+    /// With `s = m 4^k`, `1/2 <= m < 2`: the table's chord at m, times 2^k.
     #[inline(always)]
     fn hypot(self, other: f32, table: &SqrtTable<f32>) -> f32 {
         let Square { segment, mantissa, power } = Square::of_sum(self, other);

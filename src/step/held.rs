@@ -10,32 +10,20 @@ use crate::state::{Regime, State};
 use crate::stop::{self, Side};
 
 impl<N: Number> Law<N> {
-    /// Whether the gyro is off its stops although the last period has not begun so.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn resume(state: &mut State<N>) -> bool {
-        let released = state.regime == Regime::Released;
-        if released {
-            state.regime = Regime::Free;
-            state.stop_change_age = N::ZERO;
-        }
-        released
-    }
-
     /// On a stop, or before any period. Writes what the straight path works out into the state, phi into `held`.
     #[cold]
     #[inline(never)]
-    pub(super) fn move_held(&self, state: &mut State<N>, acting: Acting<N>) -> Faults {
+    pub(super) fn move_held(&self, state: &mut State<N>, acting: &Acting<N>) -> Faults {
         if let Regime::Held(side) = state.regime {
             // One after the other and not one in the other: the deepest calls set the stack.
             let start = state.held;
-            if self.move_on_stop(state, &acting, side) {
+            if self.move_on_stop(state, acting, side) {
                 return Faults::GYRO_SATURATED;
             }
             self.leave_stop(state, &start, side);
             return Faults::OFFSET_LEFT;
         }
-        state.regime = Regime::Free;
+        state.regime = self.off_stops();
         state.held.gimbal_angle = state.offset;
         state.sensed_rate = state.drift;
         Faults::NONE
@@ -65,7 +53,7 @@ impl<N: Number> Law<N> {
             end_slope: slope(N::narrow(gimbal_angle), gyro_angle),
         };
         let share = arc.root();
-        let motor: stop::Motor<N> = core::array::from_fn(|i| self.instant.motor[i].at(heads.modes()));
+        let motor: stop::Motor<N> = self.instant.motor(&heads);
         let [integrator, lags @ ..] = motor;
         state.held = stop::State {
             integrator: (integrator + self.motor_full_scale(state.torque)).widen(),
@@ -89,11 +77,12 @@ impl<N: Number> Law<N> {
     #[inline(never)]
     fn move_on_stop(&self, state: &mut State<N>, acting: &Acting<N>, side: Side) -> bool {
         let stop = side.mirror(self.stop.angle);
-        let quiet_rate = self.stop.gimbal_rate(&state.held, stop, acting.other.half());
+        let quiet = self.stop.quiet(&state.held, stop);
+        let quiet_rate = N::narrow(self.stop.gimbal_rate(&state.held, &quiet, acting.other.half()));
         let brake = self.stop.gimbal_rate_gain.at(&[acting.friction_level.half()]);
         let share = self.friction_share(state.relative_rate, acting.end_rate, quiet_rate, brake);
         state.torque = acting.other + acting.friction_level.times(share);
-        self.stop.advance(&mut state.held, stop, state.torque.half());
+        self.stop.advance(&mut state.held, &quiet, stop, state.torque.half());
         let stays = side.mirror(N::narrow(state.held.gimbal_rate)) >= N::ZERO;
         if stays {
             Self::tell(state, stop, N::ZERO);
@@ -125,7 +114,7 @@ impl<N: Number> Law<N> {
         let [z1, z2, z3, z4, z5] = released.lags;
         let integrator = N::narrow(state.held.integrator) - self.motor_full_scale(state.torque);
         let physical = [integrator, z1, z2, z3, z4, z5, gyro_angle, released.gyro_rate, sensed_rate];
-        state.free = core::array::from_fn(|i| self.instant.entry[i].increment(&physical));
+        self.instant.enter(&mut state.free, &physical);
         state.offset = state.held.gimbal_angle - released.gimbal_angle;
         state.regime = Regime::Released;
         state.lasting |= Faults::OFFSET_LEFT;

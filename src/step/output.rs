@@ -17,7 +17,7 @@ impl<N: Number> Law<N> {
             gimbal_rate_radps: state.sensed_rate - state.drift,
             gyro_angle_rad: state.gyro_angle,
             motor_torque_nm: match state.regime {
-                Regime::Free | Regime::Released | Regime::New => {
+                Regime::Free | Regime::Unusual | Regime::Released | Regime::New => {
                     self.motor_full_scale(state.torque) + self.instant.motor_torque.at(Heads::of(&state.free).modes())
                 }
                 Regime::Held(_) => self.stop.motor_torque_of(&state.held, state.gyro_angle),

@@ -1,16 +1,30 @@
-//! What acts over a period where inputs are held or the gyro's axes are coupled: both off by default.
+//! A period off the straight path: what acts over it, where inputs are held or the gyro's axes are coupled, too, both off
+//! by default; and whether it leads back to the straight path.
 
 use super::Acting;
 use crate::faults::Faults;
 use crate::law::Law;
 use crate::number::Number;
-use crate::state::State;
+use crate::state::{Regime, State};
+
+/// What the straight path is told.
+pub(super) struct Aside<N> {
+    pub(super) acting: Acting<N>,
+    /// Whether the gyro sits on a stop, or there is no period yet.
+    pub(super) is_held: bool,
+    pub(super) faults: Faults,
+}
 
 impl<N: Number> Law<N> {
-    /// [`Law::act`] for a law with held inputs or cross coupling.
+    /// The regime off the stops.
+    pub(crate) fn off_stops(&self) -> Regime {
+        if self.unusual { Regime::Unusual } else { Regime::Free }
+    }
+
+    /// [`Law::act`] for any law in any regime; a gyro that was released is free from now on.
     #[cold]
     #[inline(never)]
-    pub(super) fn act_unusually(&self, state: &mut State<N>) -> (Acting<N>, Faults) {
+    pub(super) fn act_aside(&self, state: &mut State<N>) -> Aside<N> {
         let last = Acting {
             other: state.other_torque + state.other_torque,
             friction_level: state.friction_level + state.friction_level,
@@ -27,7 +41,11 @@ impl<N: Number> Law<N> {
         if self.cross_coupling {
             self.couple(state, &mut acting);
         }
-        (acting, faults)
+        if state.regime == Regime::Released {
+            state.regime = self.off_stops();
+            state.stop_change_age = N::ZERO;
+        }
+        Aside { acting, is_held: matches!(state.regime, Regime::Held(_) | Regime::New), faults }
     }
 
     /// The gyro senses `phi' + theta w_x`, and the gimbal obeys (1) for phi' alone: for the sensed rate, a change of the
