@@ -99,7 +99,7 @@ impl<N: Number> Axis<N> {
         if estimate.flags.contains(estimator::Flags::SATURATED) {
             self.monitor.pause(&mut self.watch);
         }
-        let report = self.monitor.step(&mut self.watch, measured.gyro_angle_rad, &output, &self.state);
+        let report = self.monitor.step(&mut self.watch, measured.gyro_angle_rad, &self.state);
         self.ring.record(measured.gyro_angle_rad, &self.row, &output, report.disagrees);
         Stepped {
             output: self.law.units().output(&output),

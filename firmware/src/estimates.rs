@@ -1,6 +1,7 @@
 //! Digests of estimator and gap monitor on the model's own signals with a pick-off's noise, and of a platform of three gimbals.
 
 use crate::cases::Case;
+use crate::noise::Noise;
 use gimbal_servo::platform::{self, Axis};
 use gimbal_servo::{Digest, Number, estimator, monitor};
 
@@ -22,7 +23,7 @@ pub fn digest<N: Number>(case: &Case) -> u64 {
     let built = monitor::Config::default().build::<N>(&config, law.gyro_exponent());
     let Ok(test) = &built else { return 0 };
     let (mut model, mut state, mut watch) = (axis.start(), law.start(), test.start());
-    let (mut digest, mut noise) = (Digest::default(), Noise(1));
+    let (mut digest, mut noise) = (Digest::default(), Noise::new());
     for k in 0..case.steps {
         let modelled = axis.step(&mut model, case.input(axis, k));
         let si = axis.units().output(&modelled);
@@ -31,7 +32,7 @@ pub fn digest<N: Number>(case: &Case) -> u64 {
         let measured = law.measured((k % MISSING != MISSING - 1).then_some(theta), Some(torque));
         let estimate = law.step(&mut state, &measured, axis, &model, modelled.faults);
         add_estimate(&mut digest, &law.si(&estimate));
-        let report = test.step(&mut watch, measured.gyro_angle_rad, &modelled, &model);
+        let report = test.step(&mut watch, measured.gyro_angle_rad, &model);
         add(&mut digest, report.residual_rad.to_f64(test.residual_exponent()));
         add(&mut digest, report.score.to_f64(0));
         digest.add(&[u8::from(report.disagrees), report.regime as u8]);
@@ -51,7 +52,7 @@ pub fn platform_digest<N: Number>() -> u64 {
     let built = platform::Config::new([Axis::Z, Axis::X, Axis::Y]).build::<N>();
     let Ok(law) = &built else { return 0 };
     let mut state = law.start();
-    let (mut digest, mut noise) = (Digest::default(), Noise(1));
+    let (mut digest, mut noise) = (Digest::default(), Noise::new());
     for k in 0..PLATFORM_STEPS {
         let output = law.step(&mut state, &law.input(&platform_row(k)));
         let mut readings = [(None, None); 3];
@@ -97,18 +98,4 @@ fn add_estimate(digest: &mut Digest, estimate: &estimator::Estimate<f64>) {
 
 fn add(digest: &mut Digest, value: f64) {
     digest.add(&value.to_bits().to_le_bytes());
-}
-
-/// Nearly normal noise: the sum of four even ones.
-struct Noise(u32);
-
-impl Noise {
-    fn next(&mut self, rms: f64) -> f64 {
-        let mut sum = 0.0;
-        for _ in 0..4 {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            sum += f64::from(self.0.cast_signed() >> 8) / f64::from(1 << 23);
-        }
-        0.866 * rms * sum
-    }
 }

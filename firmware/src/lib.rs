@@ -17,9 +17,11 @@ pub mod counter;
 #[doc(hidden)]
 pub mod entry;
 pub mod estimates;
+pub mod frames;
 #[cfg(target_os = "none")]
 pub mod log;
 pub mod minute;
+pub mod noise;
 
 /// The number system that the core is good at.
 #[cfg(all(target_os = "none", target_abi = "eabihf"))]
@@ -49,6 +51,32 @@ macro_rules! arm_program {
         #[cfg(all(target_os = "none", not(target_arch = "arm")))]
         fn elsewhere() -> Result<(), &'static str> {
             Err(concat!($name, " runs on Cortex-M alone"))
+        }
+    };
+}
+
+/// A panic handler that stops: for images that are examined and not run.
+#[macro_export]
+macro_rules! stop_at_panic {
+    () => {
+        #[panic_handler]
+        fn panic(_: &core::panic::PanicInfo) -> ! {
+            loop {
+                core::hint::spin_loop();
+            }
+        }
+    };
+}
+
+/// A `main` that does nothing, likewise.
+#[macro_export]
+macro_rules! idle_program {
+    () => {
+        #[$crate::start]
+        fn main() -> ! {
+            loop {
+                core::hint::spin_loop();
+            }
         }
     };
 }

@@ -53,6 +53,14 @@ fn flights(random: &mut Random, config: &estimator::Config) -> Vec<(Flight, Esti
     (0..10).map(fly).collect()
 }
 
+/// When a run says that it is on a stop [ms].
+fn spans(estimated: &Estimated) -> String {
+    let on_stop = |k: usize| estimated.points.get(k).is_some_and(|point| point.flags.contains(Flags::SATURATED));
+    let edges: Vec<String> =
+        (1..estimated.points.len()).filter(|k| on_stop(*k) != on_stop(k - 1)).map(|k| k.to_string()).collect();
+    if edges.is_empty() { "never".into() } else { edges.join("-") + " ms" }
+}
+
 fn values(reading: &Reading) -> [f64; 6] {
     let row = &reading.inputs;
     let read = |value: Option<f64>| value.unwrap_or(f64::NAN);
@@ -108,18 +116,34 @@ pub fn faults(runs: usize, seed: u64) -> Found {
             set(reading, channel, value);
         }
         let with = estimate(System::F32, &nominal, &config, &readings);
-        let (mut flagged, mut worst) = (false, 0.0_f64);
+        let (mut flagged, mut worst, mut place) = (false, 0.0_f64, start);
         for (k, (point, right)) in with.points.iter().zip(&without.points).enumerate().skip(start) {
             flagged |= point.flags.intersects(Flags::SENSORS);
             let later = k > start + rows + AFTER;
             let excused = point.flags.intersects(Flags::OFFSET_DOUBTFUL | Flags::SETTLING);
             if (!flagged || later) && !excused {
-                worst = worst.max((point.angle_rad - right.angle_rad).abs() / point.bound_rad);
+                let bounds = (point.angle_rad - right.angle_rad).abs() / point.bound_rad;
+                if bounds > worst {
+                    (worst, place) = (bounds, k);
+                }
             }
         }
         if worst > 2.0 {
             found.unflagged += 1;
-            found.which.push(format!("{} {}: {worst:.1} sigma", CHANNELS[channel], KINDS[kind]));
+            let (point, right) = (&with.points[place], &without.points[place]);
+            found.which.push(format!(
+                "{} {} by {:+.2} of {} for {rows} rows from {} ms: {worst:.1} bounds at {place} ms, phi off by {:.0} of {:.0} urad, bound {:.0}; \
+                 on a stop {}",
+                CHANNELS[channel],
+                KINDS[kind],
+                size,
+                SPIKES[channel],
+                start,
+                1e6 * (point.angle_rad - right.angle_rad),
+                1e6 * right.angle_rad,
+                1e6 * point.bound_rad,
+                spans(without)
+            ));
         }
         found.worst = found.worst.max(worst);
     }

@@ -7,7 +7,7 @@ mod watch;
 
 pub use page::page;
 pub use saturations::{Saturations, saturations};
-pub use watch::{EFFECTS, Seen, Watch, monitor_law, seen, swing, watch, watch_plant};
+pub use watch::{Acting, EFFECTS, Grown, Seen, Watch, monitor_law, smallest, swing, watch, watch_plant};
 
 use gimbal_plant::Row;
 use gimbal_servo::Config;

@@ -2,7 +2,7 @@
 
 use gimbal_servo::monitor::Recorder;
 use gimbal_servo::{Config, Input};
-use host_tests::estimate_figures::{EFFECTS, seen, watch, watch_plant};
+use host_tests::estimate_figures::{Acting, EFFECTS, watch, watch_plant};
 
 #[test]
 fn cross_no_alarm_while_the_model_is_right() {
@@ -13,7 +13,8 @@ fn cross_no_alarm_while_the_model_is_right() {
 #[test]
 fn cross_effects_of_five_times_the_noise_are_flagged_within_five_seconds() {
     for name in EFFECTS {
-        let seen = seen(name, 1e-5, 0.0);
+        let acting = Acting::new(name);
+        let seen = acting.seen(&acting.grown(1e-5), 0.0);
         assert!(seen.after_s.is_some_and(|after| (0.0..5.0).contains(&after)), "{name}: {seen:?}");
     }
 }

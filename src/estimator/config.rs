@@ -79,8 +79,8 @@ impl Default for Sensors {
             motor_torque_measured: true,
             delay_s: 0.0,
             stuck_rows: 8,
-            accel_jump_mps2: 20.0,
-            rate_jump_radps: 0.5,
+            accel_jump_mps2: 5.0,
+            rate_jump_radps: 0.05,
             torque_jump_nm: 5e-3,
         }
     }

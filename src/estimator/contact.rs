@@ -104,6 +104,7 @@ impl<N: Number> Law<N> {
             ..held::State::default()
         };
         state.regime = Regime::Held(side);
+        state.lasting = state.lasting.without(Flags::SATURATION_AHEAD);
         state.lasting |= Flags::OFFSET_DOUBTFUL.when(state.trouble > 0 || flags.intersects(Flags::INPUT_SPIKE));
         state.postponed = false;
         state.watched = true;

@@ -140,6 +140,8 @@ impl<N: Number> Law<N> {
         let fresh = gyro.filter(|gyro| self.stuck_rows == 0 || !equal || (!stuck && !gyro.within(zone)));
         let before = health.gyro_missing;
         health.gyro_missing = if fresh.is_some() { 0 } else { before.saturating_add(1) };
+        // So many equal readings are no chance.
+        flags |= Flags::GYRO_MISSING.when(health.gyro_missing >= OUTAGE);
         flags |= Flags::GYRO_LOST.when(health.gyro_missing > self.bridge_rows);
 
         let (mut torque, mut catch_up, mut spiked) = (None, N::ZERO, false);
@@ -151,15 +153,20 @@ impl<N: Number> Law<N> {
             let on_stop = matches!(memory.regime, super::state::Regime::Held(_));
             let rows = if on_stop { self.stuck_rows.min(4) } else { self.stuck_rows };
             let stuck = self.stuck_rows > 0 && health.torque_equal >= rows;
-            let jumped =
-                torque.is_some_and(|torque| !(torque - memory.torque).abs().within(N::from_bits(self.torque_jump)));
+            let jump = N::from_bits(self.torque_jump);
+            let jumped = torque.is_some_and(|torque| !(torque - memory.torque).abs().within(jump));
             // The first row has nothing to jump from.
             let hold = jumped && !health.torque_held && memory.regime != super::state::Regime::New;
             let confirmed = jumped && health.torque_held;
             spiked = health.torque_held && !jumped;
             health.torque_held = hold;
-            if confirmed {
-                catch_up = memory.torque_waiting - memory.torque;
+            if let (true, Some(torque)) = (confirmed, torque) {
+                // What was held back may have been a spike, and this row no jump but two rows of a servo at work: that one
+                // does not come back by so much.
+                let (twice, before) = (jump + jump, memory.torque_waiting - memory.torque);
+                let (four, back) = (twice + twice, (memory.torque_waiting - torque).abs());
+                spiked = back > four + four;
+                catch_up = if spiked { N::ZERO } else { before };
             }
             if let Some(torque) = torque {
                 memory.torque_waiting = torque;
@@ -201,6 +208,19 @@ impl<N: Number> Law<N> {
 
     /// At the end of a block of rows: whether an input has not changed since the last one's.
     pub(crate) fn watch_inputs(&self, memory: &mut Memory<N>) {
+        let (now, last) = (memory.inputs.map(N::to_bits), memory.block_inputs.map(N::to_bits));
+        if now.iter().zip(&last).all(|(now, last)| now != last) {
+            memory.block_inputs = memory.inputs;
+            memory.equal_inputs = [0; INPUTS];
+            memory.lasting = memory.lasting.without(Flags::INPUT_STUCK);
+        } else {
+            self.watch_equal(memory);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn watch_equal(&self, memory: &mut Memory<N>) {
         let mut stuck = false;
         for ((now, last), rows) in memory.inputs.iter().zip(&mut memory.block_inputs).zip(&mut memory.equal_inputs) {
             *rows = if now == last { rows.saturating_add(BLOCK) } else { 0 };

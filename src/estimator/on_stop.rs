@@ -24,7 +24,9 @@ impl<N: Number> Law<N> {
         let jump = Flags::TORQUE_MISSING.when(state.health.torque_waits());
         let faults = admitted.flags.bits() & Flags::SENSORS.bits() & !jump.bits();
         let inputs = Flags::INPUT_WRONG | Flags::INPUT_SPIKE;
-        state.lasting |= Flags::OFFSET_DOUBTFUL.when(faults & !Flags::INPUT_SPIKE.bits() != 0);
+        let stuck = state.lasting.contains(Flags::INPUT_STUCK);
+        let doubtful = faults & !Flags::INPUT_SPIKE.bits() != 0 || admitted.torque_spiked || stuck;
+        state.lasting |= Flags::OFFSET_DOUBTFUL.when(doubtful);
         self.held.advance(&mut state.held, axis, model, mean, !admitted.flags.intersects(inputs));
         if let Some(gyro) = admitted.gyro {
             let fallen = side.mirror(state.held.stop - gyro);

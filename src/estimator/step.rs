@@ -17,6 +17,8 @@ use crate::number::Number;
 use crate::signals::Input;
 use crate::state::State as ModelState;
 
+/// Rows from one look at what can wait to the next; [`sums::BLOCK`] is a multiple.
+const LOOK: u32 = 8;
 /// Sensor faults that leave the filter's disturbance torque in doubt.
 const TROUBLE: Flags = Flags::GYRO.union(Flags::TORQUE).union(Flags::INPUT_WRONG);
 /// For so many rows.
@@ -97,9 +99,7 @@ impl<N: Number> Law<N> {
         if state.offset_bound != N::ZERO {
             bound = self.root_sum.of(bound, state.offset_bound);
         }
-        let ahead = self.ahead.at(&signals);
-        let flags = flags | state.lasting | Flags::SATURATION_AHEAD.when(!ahead.within(self.stop));
-        self.report(state, angle, bound, self.torque.times(d), innovation, flags)
+        self.report(state, angle, bound, self.torque.times(d), innovation, flags | state.lasting)
     }
 
     #[inline(always)]
@@ -116,8 +116,8 @@ impl<N: Number> Law<N> {
         sums::Law::step(&mut state.sums, [accel_x, accel_y], angle);
         state.angle = angle;
         state.rows += 1;
-        if state.rows >= sums::BLOCK {
-            self.close_block(state);
+        if state.rows % LOOK == 0 {
+            self.look(state);
         }
         Estimate {
             gimbal_angle_rad: angle,
@@ -128,12 +128,18 @@ impl<N: Number> Law<N> {
         }
     }
 
-    /// The end of a block of rows.
+    /// What is done once in [`LOOK`] rows: whether theta comes to its stop within the horizon; and the end of a block of sums.
     #[inline(never)]
-    fn close_block(&self, state: &mut State<N>) {
-        state.rows = 0;
-        self.sums.close(&mut state.sums);
-        self.health.watch_inputs(state);
+    fn look(&self, state: &mut State<N>) {
+        if state.rows >= sums::BLOCK {
+            state.rows = 0;
+            self.sums.close(&mut state.sums);
+            self.health.watch_inputs(state);
+        }
+        let [theta, w, p, d] = state.filter.map(N::head);
+        let ahead = self.ahead.at(&[theta, w, p, d - self.load.times(state.torque)]);
+        let reached = state.regime == Regime::Free && !ahead.within(self.stop);
+        state.lasting = state.lasting.without(Flags::SATURATION_AHEAD) | Flags::SATURATION_AHEAD.when(reached);
     }
 
     /// The filter has been advanced, and theta is not where it should be: the disturbance has jumped, or theta has.

@@ -12,9 +12,11 @@ use crate::stored::stored;
 use crate::units::Units;
 
 /// B.
-pub(crate) const BLOCK: u32 = 8;
-/// Each factor is `2^DOWN` too small, so that a block's sums fit: t is at most `B (B + 1) / 2 = 36` products.
-const DOWN: u32 = 3;
+pub(crate) const BLOCK: u32 = 16;
+/// Each factor is as many powers of two too small, so that a block's sums fit: t is at most `B (B + 1) / 2 = 136` products. Most
+/// of them are the acceleration's, whose last bits are noise.
+const ACCEL_DOWN: u32 = 5;
+const ANGLE_DOWN: u32 = 3;
 
 /// Sums of one axis pair, the sign of the second turned round.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -43,7 +45,7 @@ stored!([N: Number] Law<N> { scale, full, count, period_s });
 
 impl<N: Number> Law<N> {
     pub(crate) fn build(units: &Units, largest_accel: f64, period_s: f64) -> Self {
-        let shifted = 2 * i32::try_from(DOWN).unwrap_or_default();
+        let shifted = i32::try_from(ACCEL_DOWN + ANGLE_DOWN).unwrap_or_default();
         let full = if N::HAS_SCALES { units.accel + units.gimbal_angle + shifted } else { 0 };
         // The same count in both number systems, where their full scales allow.
         let count = (libm::frexp(largest_accel).1 + shifted).max(full) - 30;
@@ -53,9 +55,9 @@ impl<N: Number> Law<N> {
     /// Adds the products at one row.
     #[inline(always)]
     pub(crate) fn step(state: &mut State<N>, [accel_x, accel_y]: [N; 2], gimbal_angle: N) {
-        let angle = gimbal_angle.shift_down(DOWN);
+        let angle = gimbal_angle.shift_down(ANGLE_DOWN);
         for (i, accel) in [accel_y, accel_x].into_iter().enumerate() {
-            state.velocity[i] = state.velocity[i] + accel.shift_down(DOWN).product(angle);
+            state.velocity[i] = state.velocity[i] + accel.shift_down(ACCEL_DOWN).product(angle);
             state.position[i] = state.position[i] + state.velocity[i];
         }
     }

@@ -7,8 +7,8 @@ use crate::build::poles::ORDER;
 use crate::config::within;
 use crate::number::Number;
 use crate::row::ScaledRow;
-use crate::signals::{Output, Stop};
-use crate::state::State as ModelState;
+
+use crate::state::{Regime as ModelRegime, State as ModelState};
 use crate::stored::stored;
 
 /// Rows of a block.
@@ -190,28 +190,27 @@ impl<N: Number> Law<N> {
         self.threshold.to_f64(G_SCALE)
     }
 
-    /// Takes theta as measured at this row, and what the model has for it.
-    pub fn step(
-        &self,
-        state: &mut State<N>,
-        measured: Option<N>,
-        modelled: &Output<N>,
-        model: &ModelState<N>,
-    ) -> Report<N> {
-        if modelled.relative_rate_radps.within(self.slip_rate) {
+    /// Takes theta as measured at this row, and the axis' state after the same row.
+    pub fn step(&self, state: &mut State<N>, measured: Option<N>, model: &ModelState<N>) -> Report<N> {
+        let modelled = model.gyro_angle;
+        if model.relative_rate.within(self.slip_rate) {
             state.reversed = true;
             state.level = model.friction_level;
         }
         let mut residual = N::ZERO;
         if let Some(measured) = measured {
-            residual = measured.shift_up(self.measured_shift) - modelled.gyro_angle_rad.shift_up(self.modelled_shift);
+            residual = measured.shift_up(self.measured_shift) - modelled.shift_up(self.modelled_shift);
         }
-        if modelled.stop != Stop::Free {
+        if matches!(model.regime, ModelRegime::Held(_)) {
             state.saturated = true;
         }
-        state.peak = state.peak.most(modelled.gyro_angle_rad.abs());
-        // A sum of 32 squares over 32.
-        state.sum = state.sum + N::head(self.share_of_block * residual.times(residual));
+        // Without a sign the bits are in the order of the values, and no flag of a float has to be fetched.
+        let size = modelled.abs().to_bits();
+        if size > state.peak.to_bits() {
+            state.peak = N::from_bits(size);
+        }
+        let square = residual.times(residual);
+        state.sum = state.sum + if N::HAS_SCALES { N::head(self.share_of_block * square) } else { square };
         state.rows += 1;
         if state.rows >= BLOCK {
             self.close(state);
@@ -244,7 +243,9 @@ impl<N: Number> Law<N> {
         let share = self.share.at(&[state.peak]);
         variance = variance + share.times(share).shift_down(M_SHIFT);
         state.peak = N::head(self.decay * state.peak);
-        let m = state.sum.ratio(variance).least(self.largest);
+        // A mean of 32 squares; fixed point has room for nothing else on the way, either.
+        let mean = if N::HAS_SCALES { state.sum } else { N::head(self.share_of_block * state.sum) };
+        let m = mean.ratio(variance).least(self.largest);
         (state.sum, state.rows) = (N::ZERO, 0);
         if state.since_saturation < PAUSE {
             state.regime = Regime::Saturated;

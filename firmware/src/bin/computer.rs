@@ -23,19 +23,9 @@ mod target {
     use gimbal_computer::Computer;
     use gimbal_firmware::Native;
     use gimbal_wire::{FRAME_LEN, Frame, Receiver};
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo) -> ! {
-        loop {
-            core::hint::spin_loop();
-        }
-    }
 
-    #[gimbal_firmware::start]
-    fn main() -> ! {
-        loop {
-            core::hint::spin_loop();
-        }
-    }
+    gimbal_firmware::stop_at_panic!();
+    gimbal_firmware::idle_program!();
 
     /// A byte of the line, and the frame that it completes.
     #[unsafe(no_mangle)]

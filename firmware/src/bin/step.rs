@@ -19,19 +19,8 @@ mod target {
     use panic_never as _;
 
     #[cfg(feature = "panic-allowed")]
-    #[panic_handler]
-    fn panic(_: &core::panic::PanicInfo) -> ! {
-        loop {
-            core::hint::spin_loop();
-        }
-    }
-
-    #[gimbal_firmware::start]
-    fn main() -> ! {
-        loop {
-            core::hint::spin_loop();
-        }
-    }
+    gimbal_firmware::stop_at_panic!();
+    gimbal_firmware::idle_program!();
 
     /// Named in the image and in `xtask/src/board/gates.rs`.
     #[unsafe(no_mangle)]

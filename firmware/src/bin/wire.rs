@@ -9,7 +9,7 @@ mod target {
     use core::hint::black_box;
     use cortex_m::singleton;
     use gimbal_computer::{Computer, parameters};
-    use gimbal_firmware::{Native, counter::Counter, semihosting::println};
+    use gimbal_firmware::{Native, counter::Counter, frames, semihosting::println};
     use gimbal_servo::{Config, estimator};
     use gimbal_wire::{FRAME_LEN, Frame, LoadEnd, LoadPart, Message, PART_VALUES, Receiver, Run, Sensor};
 
@@ -48,13 +48,7 @@ mod target {
             emit.add(counter.count(|| bytes = black_box(sensor).emit()));
             let bytes = black_box(bytes);
             let mut came = None;
-            receive.add(counter.count(|| {
-                for byte in bytes {
-                    if let Some(frame) = receiver.push(byte) {
-                        came = Some(frame);
-                    }
-                }
-            }));
+            receive.add(counter.count(|| came = frames::receive(&mut receiver, &bytes)));
             if black_box(came).is_none() {
                 return Err("a frame is refused");
             }

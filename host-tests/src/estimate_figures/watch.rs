@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::thread;
 
-use gimbal_plant::{Effect, Plant, Row};
+use gimbal_plant::{Effect, Plant, Row, Sample};
 use gimbal_servo::{Config, estimator, monitor};
 
 use super::altered;
@@ -92,7 +92,8 @@ fn minute(law: &monitor::Law<f32>, drift: f64, seed: u64) -> Watch {
     for k in 0..60_000 {
         let row = swing(k, &shape);
         let row = Row { vehicle_rate_radps: pace * row.vehicle_rate_radps, ..row };
-        let theta = truth.step(&row).gyro_angle_rad + 2e-6 * quick.normal();
+        truth.law.advance(&mut truth.state, &truth.law.units().input(&si(&row)));
+        let theta = f64::from(truth.state.gyro_angle_rad()) + 2e-6 * quick.normal();
         let noisy = Row {
             accel_x_mps2: row.accel_x_mps2 + 0.01 * quick.normal(),
             accel_y_mps2: row.accel_y_mps2 + 0.01 * quick.normal(),
@@ -131,12 +132,12 @@ fn see(
 ) -> bool {
     let step = estimator::Sensors::default().gyro_step_rad;
     let theta = (theta / step).round() * step;
-    let output = model.law.step(&mut model.state, model.law.units().input(&si(row)));
+    model.law.advance(&mut model.state, &model.law.units().input(&si(row)));
     if theta.abs() > 8.2e-3 {
         law.pause(state);
     }
     #[allow(clippy::cast_possible_truncation, reason = "as the flight computer holds it")]
-    let report = law.step(state, Some(theta as f32), &output, &model.state);
+    let report = law.step(state, Some(theta as f32), &model.state);
     found.largest = found.largest.max(f64::from(report.score) / law.threshold());
     found.alarms += u32::from(report.disagrees);
     !report.disagrees
@@ -193,45 +194,117 @@ pub struct Seen {
     pub after_s: Option<f64>,
 }
 
-/// An effect of the size that changes theta by `change_rad` rms.
-///
-/// # Panics
-/// If there is no such effect.
-#[must_use]
-pub fn seen(name: &str, change_rad: f64, model_tolerance: f64) -> Seen {
-    const START: usize = 5_000;
-    const ROWS: usize = 10_000;
+/// Row at which an effect begins.
+const START: usize = 5_000;
+const ROWS: usize = 10_000;
+
+/// An effect on a flight of ten seconds, of any size.
+#[derive(Debug)]
+pub struct Acting {
+    effect: Effect,
+    nominal: Plant,
+    base: Vec<Sample>,
+}
+
+/// A flight on which an effect has changed theta by as much as was asked for.
+#[derive(Debug)]
+pub struct Grown {
+    change_rad: f64,
+    factor: f64,
+    samples: Vec<Sample>,
+}
+
+fn fly(plant: &Plant) -> Vec<Sample> {
     let shape = [0.6, 0.8, 0.05, 0.5, 0.5, 0.5];
-    let nominal = Plant::new(&Config::consistent()).expect("a plant that builds").with_tolerance(1e-9);
-    let effect = Effect::from_name(name).expect("an effect of this name");
-    let run = |plant: &Plant| -> Vec<gimbal_plant::Sample> { plant.run((0..ROWS).map(|k| swing(k, &shape))).collect() };
-    let base = run(&nominal);
-    let with = |factor: f64| {
-        let mut values = effect.typical();
-        values[..effect.sizes()].iter_mut().for_each(|value| *value *= factor);
-        let samples = run(&nominal.with_effect(effect, &values).ok()?);
-        let pairs = samples[START..].iter().zip(&base[START..]);
+    plant.run((0..ROWS).map(|k| swing(k, &shape))).collect()
+}
+
+impl Acting {
+    /// The effect of this name.
+    ///
+    /// # Panics
+    /// If there is no such effect.
+    #[must_use]
+    pub fn new(name: &str) -> Self {
+        let nominal = Plant::new(&Config::consistent()).expect("a plant that builds").with_tolerance(1e-9);
+        let effect = Effect::from_name(name).expect("an effect of this name");
+        Self { effect, base: fly(&nominal), nominal }
+    }
+
+    /// The effect `factor` times its typical size; none where the loop cannot be built.
+    fn with(&self, factor: f64) -> Option<Grown> {
+        let mut values = self.effect.typical();
+        values[..self.effect.sizes()].iter_mut().for_each(|value| *value *= factor);
+        let samples = fly(&self.nominal.with_effect(self.effect, &values).ok()?);
+        let pairs = samples[START..].iter().zip(&self.base[START..]);
         let square: f64 = pairs.map(|(a, b)| (a.logged.gyro_angle_rad - b.logged.gyro_angle_rad).powi(2)).sum();
-        Some(((square / (ROWS - START) as f64).sqrt(), samples))
-    };
-    let (mut low, mut high) = (1e-4_f64, 100.0_f64);
-    for _ in 0..14 {
-        let middle = (low * high).sqrt();
-        if with(middle).is_some_and(|(change, _)| change < change_rad) { low = middle } else { high = middle }
+        Some(Grown { change_rad: (square / (ROWS - START) as f64).sqrt(), factor, samples })
     }
-    let (change_rad, samples) = with(high).expect("a size that builds");
-    let (law, mut model) =
-        (monitor_law(model_tolerance), Axis::<f32>::new(&Config::consistent()).expect("a law that builds"));
-    let (mut state, mut random, mut found) = (law.start(), Random::new(3), Watch::default());
-    let mut after_s = None;
-    for (k, (sample, without)) in samples.iter().zip(&base).enumerate() {
-        let sample = if k < START { without } else { sample };
-        let reading = read(sample, &estimator::Sensors::default(), &Noise::default(), &mut random);
-        let theta = reading.gyro_angle_rad.unwrap_or(0.0);
-        if !see(&law, &mut state, &mut model, theta, &reading.inputs, &mut found) {
-            after_s = Some((k as f64 - START as f64) * 1e-3);
-            break;
+
+    /// The effect of the size that changes theta by `change_rad` rms, to 2 % where its size decides on that.
+    ///
+    /// # Panics
+    /// If no size builds.
+    #[must_use]
+    pub fn grown(&self, change_rad: f64) -> Grown {
+        let (mut low, mut high) = (1e-5_f64, 100.0_f64);
+        let mut best: Option<Grown> = None;
+        let mut factor = 0.1;
+        for _ in 0..16 {
+            let grown = self.with(factor);
+            let change = grown.as_ref().map_or(f64::INFINITY, |grown| grown.change_rad);
+            if change < change_rad {
+                low = factor
+            } else {
+                high = factor
+            }
+            if change >= change_rad {
+                best = grown;
+                if change < 1.02 * change_rad {
+                    break;
+                }
+            }
+            // Nearly every effect changes theta in proportion to its size.
+            let proportional = factor * 1.01 * change_rad / change;
+            let inside = proportional > low && proportional < high;
+            factor = if inside { proportional } else { (low * high).sqrt() };
         }
+        best.expect("a size that builds")
     }
-    Seen { change_rad, factor: high, after_s }
+
+    /// How a monitor that grants the model `model_tolerance` sees it.
+    #[must_use]
+    pub fn seen(&self, grown: &Grown, model_tolerance: f64) -> Seen {
+        let (law, mut model) =
+            (monitor_law(model_tolerance), Axis::<f32>::new(&Config::consistent()).expect("a law that builds"));
+        let (mut state, mut random, mut found) = (law.start(), Random::new(3), Watch::default());
+        let mut after_s = None;
+        for (k, (sample, without)) in grown.samples.iter().zip(&self.base).enumerate() {
+            let sample = if k < START { without } else { sample };
+            let reading = read(sample, &estimator::Sensors::default(), &Noise::default(), &mut random);
+            let theta = reading.gyro_angle_rad.unwrap_or(0.0);
+            if !see(&law, &mut state, &mut model, theta, &reading.inputs, &mut found) {
+                after_s = Some((k as f64 - START as f64) * 1e-3);
+                break;
+            }
+        }
+        Seen { change_rad: grown.change_rad, factor: grown.factor, after_s }
+    }
+}
+
+/// The smallest change of theta that is flagged within 5 s, for each of `granted`: tried from 4 urad on in steps of a
+/// quarter, from 20 urad on of a half.
+#[must_use]
+pub fn smallest(name: &str, granted: &[f64]) -> Vec<Option<Seen>> {
+    let acting = Acting::new(name);
+    let mut found = vec![None; granted.len()];
+    let mut change_rad = 4e-6;
+    while change_rad < 2e-3 && found.iter().any(Option::is_none) {
+        let grown = acting.grown(change_rad);
+        for (found, granted) in found.iter_mut().zip(granted).filter(|(found, _)| found.is_none()) {
+            *found = Some(acting.seen(&grown, *granted)).filter(|seen| seen.after_s.is_some());
+        }
+        change_rad *= if change_rad < 2e-5 { 1.25 } else { 1.5 };
+    }
+    found
 }

@@ -4,6 +4,7 @@ use crate::tally::Tally;
 use core::hint::black_box;
 use gimbal_firmware::cases::{Case, FLIGHT, STOPS};
 use gimbal_firmware::counter::Counter;
+use gimbal_firmware::noise::Noise;
 use gimbal_servo::{Number, estimator, monitor};
 
 /// Flight, and stop to stop without the torque that the model is told of: the estimator must find it.
@@ -23,7 +24,7 @@ pub(crate) fn count<N: Number>(counter: &mut Counter, case: &Case, number: &str)
         return Err("the monitor cannot be built");
     };
     let (mut model, mut state, mut test_state) = (axis.start(), law.start(), test.start());
-    let mut noise = Noise(1);
+    let mut noise = Noise::new();
     let [mut settling, mut steady, mut monitored] = [Tally::EMPTY; 3];
     for k in 0..case.steps {
         let modelled = axis.step(&mut model, case.input(axis, k));
@@ -40,7 +41,7 @@ pub(crate) fn count<N: Number>(counter: &mut Counter, case: &Case, number: &str)
             steady.add(counted);
         }
         monitored.add(counter.count(|| {
-            black_box(test.step(&mut test_state, measured.gyro_angle_rad, &modelled, &model));
+            black_box(test.step(&mut test_state, measured.gyro_angle_rad, &model));
         }));
     }
     let [settled, unsettled, monitor] = if case.name == FLIGHT.name {
@@ -52,18 +53,4 @@ pub(crate) fn count<N: Number>(counter: &mut Counter, case: &Case, number: &str)
     settling.print("cost", unsettled, number);
     monitored.print("cost", monitor, number);
     Ok(())
-}
-
-/// Nearly normal noise: the sum of four even ones.
-struct Noise(u32);
-
-impl Noise {
-    fn next(&mut self, rms: f64) -> f64 {
-        let mut sum = 0.0;
-        for _ in 0..4 {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            sum += f64::from(self.0.cast_signed() >> 8) / f64::from(1 << 23);
-        }
-        0.866 * rms * sum
-    }
 }

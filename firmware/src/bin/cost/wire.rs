@@ -4,6 +4,7 @@
 use crate::tally::Tally;
 use core::hint::black_box;
 use gimbal_firmware::counter::Counter;
+use gimbal_firmware::frames;
 use gimbal_wire::{FRAME_LEN, Frame, Message, Receiver, Sensor};
 
 const FRAMES: u16 = 200;
@@ -25,13 +26,7 @@ pub(crate) fn count(counter: &mut Counter, number: &str) -> Result<(), &'static 
         emit.add(counter.count(|| bytes = frame.emit()));
         let bytes = black_box(bytes);
         let mut came = None;
-        receive.add(counter.count(|| {
-            for byte in bytes {
-                if let Some(frame) = receiver.push(byte) {
-                    came = Some(frame);
-                }
-            }
-        }));
+        receive.add(counter.count(|| came = frames::receive(&mut receiver, &bytes)));
         if black_box(came) != Some(frame) {
             return Err("a frame does not come back as it was");
         }
