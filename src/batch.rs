@@ -33,6 +33,19 @@ use sums::Sums;
 /// Rows of `L` lanes, signal by signal.
 pub type Rows<const L: usize> = Input<[f32; L]>;
 
+/// The rows of several axes as one of all lanes.
+#[must_use]
+pub fn side_by_side<const L: usize>(rows: &[Input<f32>; L]) -> Rows<L> {
+    Input {
+        accel_x_mps2: rows.map(|row| row.accel_x_mps2),
+        accel_y_mps2: rows.map(|row| row.accel_y_mps2),
+        accel_z_mps2: rows.map(|row| row.accel_z_mps2),
+        vehicle_rate_radps: rows.map(|row| row.vehicle_rate_radps),
+        torque_nm: rows.map(|row| row.torque_nm),
+        spin_rate_radps: rows.map(|row| row.spin_rate_radps),
+    }
+}
+
 /// `L` axes that step together; 32 lanes stay within a first-level cache.
 ///
 /// ```

@@ -9,7 +9,7 @@ use std::array::from_fn;
 use std::process::Command;
 use std::time::Instant;
 
-use gimbal_servo::batch::{Batch, Processor, Rows};
+use gimbal_servo::batch::{Batch, Processor, Rows, side_by_side};
 use gimbal_servo::{Config, Input, Law};
 
 #[allow(dead_code, reason = "the command's own")]
@@ -81,19 +81,8 @@ fn load() -> Load {
             config.build().expect("a preset, a little changed")
         })
         .collect();
-    let rows = (0..ROWS)
-        .map(|index| {
-            let lanes: [Input<f32>; LANES] = from_fn(|lane| laws[lane].units().input(&row(index, lane)));
-            Input {
-                accel_x_mps2: lanes.map(|row| row.accel_x_mps2),
-                accel_y_mps2: lanes.map(|row| row.accel_y_mps2),
-                accel_z_mps2: lanes.map(|row| row.accel_z_mps2),
-                vehicle_rate_radps: lanes.map(|row| row.vehicle_rate_radps),
-                torque_nm: lanes.map(|row| row.torque_nm),
-                spin_rate_radps: lanes.map(|row| row.spin_rate_radps),
-            }
-        })
-        .collect();
+    let rows =
+        (0..ROWS).map(|index| side_by_side(&from_fn(|lane| laws[lane].units().input(&row(index, lane))))).collect();
     Load { laws, rows }
 }
 

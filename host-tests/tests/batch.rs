@@ -1,6 +1,6 @@
 //! Lanes of a batch against the scalar step: every output of every row, and the whole state, bit for bit.
 
-use gimbal_servo::batch::{Baseline, Batch, Output, Processor, Rows};
+use gimbal_servo::batch::{Baseline, Batch, Output, Processor, Rows, side_by_side};
 use gimbal_servo::paper::STANDARD_GRAVITY_MPS2;
 use gimbal_servo::{Config, Input, Interpolation, Law, State, Stop};
 use host_tests::random::Random;
@@ -60,17 +60,6 @@ fn rows(random: &mut Random, held: &mut [Input<f32>; LANES], largest_g: f64) -> 
         row.spin_rate_radps = signal(0.5);
     }
     side_by_side(held)
-}
-
-fn side_by_side(rows: &[Input<f32>; LANES]) -> Rows<LANES> {
-    Input {
-        accel_x_mps2: rows.map(|row| row.accel_x_mps2),
-        accel_y_mps2: rows.map(|row| row.accel_y_mps2),
-        accel_z_mps2: rows.map(|row| row.accel_z_mps2),
-        vehicle_rate_radps: rows.map(|row| row.vehicle_rate_radps),
-        torque_nm: rows.map(|row| row.torque_nm),
-        spin_rate_radps: rows.map(|row| row.spin_rate_radps),
-    }
 }
 
 fn assert_same(row: u32, lane: usize, batch: &Output<'_, LANES>, scalar: &gimbal_servo::Output<f32>) {

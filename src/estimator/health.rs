@@ -160,13 +160,8 @@ impl<N: Number> Law<N> {
             let confirmed = jumped && health.torque_held;
             spiked = health.torque_held && !jumped;
             health.torque_held = hold;
-            if let (true, Some(torque)) = (confirmed, torque) {
-                // What was held back may have been a spike, and this row no jump but two rows of a servo at work: that one
-                // does not come back by so much.
-                let (twice, before) = (jump + jump, memory.torque_waiting - memory.torque);
-                let (four, back) = (twice + twice, (memory.torque_waiting - torque).abs());
-                spiked = back > four + four;
-                catch_up = if spiked { N::ZERO } else { before };
+            if confirmed {
+                catch_up = memory.torque_waiting - memory.torque;
             }
             if let Some(torque) = torque {
                 memory.torque_waiting = torque;

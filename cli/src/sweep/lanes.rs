@@ -2,9 +2,9 @@
 
 use std::array::from_fn;
 
-use gimbal_servo::batch::{Batch, Processor};
+use gimbal_servo::batch::{Batch, Processor, side_by_side};
 use gimbal_servo::paper::STANDARD_GRAVITY_MPS2;
-use gimbal_servo::{BuildError, Config, Input, Law, Stop};
+use gimbal_servo::{BuildError, Config, Law, Stop};
 
 use super::processor::{self, Work};
 use super::trial::{Case, Outcome, PROFILE_G, Root, Spans, free_law};
@@ -74,17 +74,6 @@ fn raise(peaks: &mut [f32; LANES], values: &[f32; LANES]) {
     for (peak, value) in peaks.iter_mut().zip(values) {
         let size = value.abs();
         *peak = if size > *peak { size } else { *peak };
-    }
-}
-
-fn side_by_side(rows: &[Input<f32>; LANES]) -> Input<[f32; LANES]> {
-    Input {
-        accel_x_mps2: rows.map(|row| row.accel_x_mps2),
-        accel_y_mps2: rows.map(|row| row.accel_y_mps2),
-        accel_z_mps2: rows.map(|row| row.accel_z_mps2),
-        vehicle_rate_radps: rows.map(|row| row.vehicle_rate_radps),
-        torque_nm: rows.map(|row| row.torque_nm),
-        spin_rate_radps: rows.map(|row| row.spin_rate_radps),
     }
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct Count {
 /// What the step takes in one number system.
 #[derive(Debug, Default)]
 pub(crate) struct Cost {
-    /// By the name of the profile; steps with a stop event by `NAME, stop events`.
+    /// By the name of the profile; steps with a stop event by `NAME, stop events`, those without by `NAME, other steps`.
     pub(crate) instructions: BTreeMap<String, Count>,
     pub(crate) state_bytes: u64,
     pub(crate) law_bytes: u64,
@@ -67,7 +67,7 @@ pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
     Ok(costs)
 }
 
-/// `cost PROFILE NUMBER STEPS MIN MEAN_MILLI MAX`, `cost-events` the same, `size NUMBER STATE LAW`, `size-estimator` the
+/// `cost PROFILE NUMBER STEPS MIN MEAN_MILLI MAX`, `cost-events` and `cost-others` the same, `size NUMBER STATE LAW`, `size-estimator` the
 /// same, `error NAME NUMBER PPM`.
 fn read_line(line: &str, costs: &mut BTreeMap<&'static str, Cost>) -> Result<()> {
     let words: Vec<&str> = line.split_whitespace().collect();
@@ -84,8 +84,12 @@ fn read_line(line: &str, costs: &mut BTreeMap<&'static str, Cost>) -> Result<()>
             let cost = costs.get_mut(*number).context("an unknown number system")?;
             cost.errors_ppm.insert((*name).to_owned(), ppm.parse()?);
         }
-        [kind @ ("cost" | "cost-events"), profile, number, steps, min, mean_milli, max] => {
-            let name = if *kind == "cost" { (*profile).to_owned() } else { format!("{profile}, stop events") };
+        [kind @ ("cost" | "cost-events" | "cost-others"), profile, number, steps, min, mean_milli, max] => {
+            let name = match *kind {
+                "cost" => (*profile).to_owned(),
+                "cost-events" => format!("{profile}, stop events"),
+                _ => format!("{profile}, other steps"),
+            };
             let mean = mean_milli.parse::<f64>()? / 1000.0;
             let count = Count { steps: steps.parse()?, min: min.parse()?, mean, max: max.parse()? };
             costs.get_mut(*number).context("an unknown number system")?.instructions.insert(name, count);

@@ -26,7 +26,7 @@ pub(crate) fn count<N: Number>(counter: &mut Counter, case: &Case, number: &str)
     let built = (case.config)().build::<N>();
     let Ok(law) = &built else { return Err("the law cannot be built") };
     let mut state = law.start();
-    let [mut all, mut events, mut outputs] = [Tally::EMPTY; 3];
+    let [mut all, mut events, mut others, mut outputs] = [Tally::EMPTY; 4];
     // The first call has no period behind it and does less.
     law.advance(&mut state, &case.input(law, 0));
     let steps = if cfg!(feature = "brief") { 200 } else { case.steps };
@@ -41,12 +41,17 @@ pub(crate) fn count<N: Number>(counter: &mut Counter, case: &Case, number: &str)
         outputs.add(counter.count(|| output = Some(law.output(&state))));
         if black_box(output).is_some_and(|output| output.stop_change_age != N::default()) {
             events.add(count);
+        } else {
+            others.add(count);
         }
     }
     all.print("cost", case.name, number);
     if case.name == FLIGHT.name {
         outputs.print("cost", "output", number);
     }
-    events.print("cost-events", case.name, number);
+    if case.name == STOPS.name {
+        events.print("cost-events", case.name, number);
+        others.print("cost-others", case.name, number);
+    }
     Ok(())
 }
