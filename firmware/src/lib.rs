@@ -17,6 +17,7 @@ pub mod counter;
 #[doc(hidden)]
 pub mod entry;
 pub mod estimates;
+#[cfg(target_os = "none")]
 pub mod frames;
 #[cfg(target_os = "none")]
 pub mod log;
