@@ -254,9 +254,9 @@ impl Acting {
             let grown = self.with(factor);
             let change = grown.as_ref().map_or(f64::INFINITY, |grown| grown.change_rad);
             if change < change_rad {
-                low = factor
+                low = factor;
             } else {
-                high = factor
+                high = factor;
             }
             if change >= change_rad {
                 best = grown;
@@ -273,6 +273,9 @@ impl Acting {
     }
 
     /// How a monitor that grants the model `model_tolerance` sees it.
+    ///
+    /// # Panics
+    /// Never: the preset builds.
     #[must_use]
     pub fn seen(&self, grown: &Grown, model_tolerance: f64) -> Seen {
         let (law, mut model) =
@@ -294,6 +297,9 @@ impl Acting {
 
 /// The smallest change of theta that is flagged within 5 s, for each of `granted`: tried from 4 urad on in steps of a
 /// quarter, from 20 urad on of a half.
+///
+/// # Panics
+/// If there is no such effect.
 #[must_use]
 pub fn smallest(name: &str, granted: &[f64]) -> Vec<Option<Seen>> {
     let acting = Acting::new(name);
