@@ -23,8 +23,8 @@ const SLOW_UNKNOWN: f64 = 0.05;
 pub(crate) const STATE_STEP: f64 = 1e-3;
 
 /// Share of the best fit's excess put down to the formulation, and what power of the noise may stand out by.
-const FORMULATION: f64 = 0.01;
-const NOISE_KNOWN: f64 = 1.01;
+const FORMULATION: f64 = 0.012;
+const NOISE_KNOWN: f64 = 1.005;
 
 /// Which column is what.
 #[derive(Debug, Clone)]

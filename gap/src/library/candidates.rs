@@ -60,6 +60,7 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "mass_unbalance" => vec![released(effect, &["unbalance x", "unbalance y"])],
         // the pick-off shows the stop itself, and its steps
         "stop_angle" | "pickoff_quantisation" | "torque_scale" => Vec::new(),
+        "float_torque" if !offer.sees_gimbal => Vec::new(),
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
         "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),

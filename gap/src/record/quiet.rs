@@ -23,7 +23,7 @@ const STEP: f64 = 4.0;
 /// Rows around a step that keep theirs too.
 const AROUND: usize = 20;
 /// Share of an output's misfit from row to row that the filter may leave.
-const BETTER: f64 = 0.999;
+const BETTER: f64 = 0.995;
 /// Rows over which the misfit is compared.
 const APART: usize = 12;
 
