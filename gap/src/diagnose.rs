@@ -94,19 +94,20 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     }
     let mut decision = decide(&problem, &search, &model.tolerance);
     let channels = record.channels.len();
-    let null = search.null.clone();
     let mut fit = match decision.chosen {
         Some(index) => search.fits.swap_remove(index),
-        None => search.null,
+        None => search.null.clone(),
     };
     let mut shrink = shrink(&problem, &fit);
-    if contradicted(&mut decision, &shrink) {
-        shrink = crate::judge::shrink(&problem, &null);
-        fit = null;
+    let chosen = decision.chosen.is_some();
+    if contradicted(&mut decision, &shrink) && chosen {
+        shrink = crate::judge::shrink(&problem, &search.null);
+        fit = search.null;
     }
     let period_s = record.inputs.period_s;
-    let spectra = [&shrink.nominal, &fit.prediction].map(|prediction| {
-        let residual = crate::fit::raw_residual(&record, prediction);
+    let [before, after] =
+        [&shrink.nominal, &fit.prediction].map(|prediction| crate::fit::raw_residual(&record, prediction));
+    let spectra = [&before, &after].map(|residual| {
         let of = |place: usize| {
             Spectrum::new(&residual[place], &record.channels[place].valid, problem.noise[place], period_s)
         };
@@ -152,8 +153,6 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let (correlations, bounds_hit) = (correlations(&problem, &fit), bounds_hit(&problem, &fit));
     let curve = curve(&problem, &fit, &shrink.nominal);
     let free_running = if gap { free_running(&record, model, &decision, &fit) } else { Vec::new() };
-    let [before, after] =
-        [&shrink.nominal, &fit.prediction].map(|prediction| crate::fit::raw_residual(&record, prediction));
     let one_step = if gap { one_step(&record, &before, &after) } else { Vec::new() };
     let found_regimes = if gap { regimes(&record, &fit.prediction, &total, channels) } else { Vec::new() };
     let found_spans = if gap && !fit.set.0.is_empty() { spans(&total, channels, period_s) } else { Vec::new() };

@@ -16,10 +16,9 @@ use serde_json::{Value, json};
 
 use crate::diagnose::Diagnosis;
 use crate::fit::raw_residual;
-use crate::judge::{Verdict, Yardstick};
-use crate::library::{nuisances, platform};
+use crate::judge::{Verdict, Yardstick, in_step};
+use crate::library::{nuisances, platform, releases};
 use crate::place::erfc;
-use crate::record::{Record, Signal};
 use crate::simulate::{Physics, predict};
 
 /// Least probability that one log counts with.
@@ -30,21 +29,6 @@ const CLEAR: f64 = 10.0;
 const BY_CHANCE: f64 = 0.01;
 /// Inputs are equal when their difference is this share of their change.
 const EQUAL: f64 = 0.05;
-/// Not scored: the prediction comes into step [s].
-const COMES_IN_S: f64 = 3.0;
-/// Effects that shift a parameter which every fit has.
-const RELEASED: [&str; 9] = [
-    "friction_level",
-    "mass_unbalance",
-    "loop_gain",
-    "motor_lag",
-    "gyro_damping",
-    "angular_momentum",
-    "gimbal_inertia",
-    "pickoff_scale",
-    "torque_scale",
-];
-
 /// A set of effects and its probability over all logs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PooledSet {
@@ -213,18 +197,10 @@ fn score(
         let mut physics = physics.clone();
         physics.config.period_s = record.inputs.period_s;
         let begin = record.begin(&physics, &record.inputs);
-        off(record, &raw_residual(record, &predict(&physics, &record.inputs, &begin, usize::MAX)))
+        in_step(record, &raw_residual(record, &predict(&physics, &record.inputs, &begin, usize::MAX)))
     };
     let (before, after) = (rms(&platform(model)), rms(&of_others(diagnoses, &others, best, model)));
-    record
-        .channels
-        .iter()
-        .enumerate()
-        .map(|(place, channel)| {
-            let column = channel.signal.column();
-            Yardstick { name: column.name(), unit: column.unit(), before: before[place], after: after[place] }
-        })
-        .collect()
+    Yardstick::of_channels(record, &before, &after)
 }
 
 /// The platform with the mean of what the fits of some logs say.
@@ -236,7 +212,7 @@ fn of_others(diagnoses: &[Diagnosis], logs: &[usize], best: &[&'static str], mod
         let sum: f64 = fits.iter().filter_map(|fit| fit.shifts.get(place)).sum();
         parameter.shift(&mut physics, sum / fits.len().max(1) as f64);
     }
-    for effect in best.iter().filter(|effect| !RELEASED.contains(effect)) {
+    for effect in best.iter().filter(|effect| releases(effect).is_empty()) {
         let values: Vec<f64> = shared(diagnoses, logs, effect).iter().map(|own| own.mean[0]).collect();
         if let Some(entry) = Effect::from_name(effect).filter(|_| values.iter().all(|value| value.is_finite())) {
             let mut config = physics.config;
@@ -249,17 +225,6 @@ fn of_others(diagnoses: &[Diagnosis], logs: &[usize], best: &[&'static str], mod
         }
     }
     physics
-}
-
-/// Rms of residuals from where the prediction has come into step.
-fn off(record: &Record, residuals: &[Vec<f64>]) -> Vec<f64> {
-    let of = |(residual, channel): (&Vec<f64>, &crate::record::Channel)| {
-        let scored = (0..record.rows()).filter(|&k| channel.valid[k] && k as f64 * record.inputs.period_s > COMES_IN_S);
-        let off: Vec<f64> = scored.map(|k| residual[k]).collect();
-        let level = if channel.signal == Signal::GimbalAngle { mean(off.iter().copied()) } else { 0.0 };
-        mean(off.iter().map(|value| (value - level).powi(2))).sqrt()
-    };
-    residuals.iter().zip(&record.channels).map(of).collect()
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {

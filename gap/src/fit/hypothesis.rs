@@ -3,8 +3,8 @@
 use gimbal_plant::{Bound, Effect};
 use nalgebra::DVector;
 
-use super::problem::{difference, residual};
 use super::pull::Pull;
+use super::signals::{difference, residual};
 use super::{Problem, Set};
 use crate::library::{Nuisance, apply};
 use crate::simulate::{Begin, Physics, Prediction, predict};

@@ -6,9 +6,9 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::Problem;
+use super::draft::{STATE_STEP, remembered_rows};
 use super::hypothesis::{Hypothesis, Outcome, Point};
 use super::normal::{Solution, products, slices, solve};
-use super::problem::{STATE_STEP, remembered_rows};
 use super::pull::Pull;
 
 /// Place of the gimbal's angle at the beginning, which does not die away.
@@ -53,7 +53,7 @@ impl<'a> Linear<'a> {
     }
 
     /// Normal equations of these columns and others.
-    fn joined(&self, others: &[Vec<f64>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    pub(crate) fn joined(&self, others: &[Vec<f64>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let fixed = self.columns.len();
         let more = others.len();
         let mut columns = slices(&self.columns);

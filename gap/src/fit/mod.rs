@@ -1,5 +1,6 @@
 //! Fitting: whitened residuals, sensitivities, normal equations, and the search over effects.
 
+mod draft;
 mod hypothesis;
 mod linear;
 mod normal;
@@ -9,13 +10,16 @@ mod refine;
 mod refit;
 mod rest;
 mod search;
+mod signals;
+mod turning;
 mod whiten;
 
+pub(crate) use linear::Linear;
 pub use normal::Solution;
 pub(crate) use normal::{drive, slices, solve};
 pub use problem::{BLOCKS, Columns, Problem};
-pub(crate) use problem::{predicted, residual as raw_residual};
 pub use refine::{Effort, Fit, refine};
 pub use refit::{refit, without};
 pub use search::{Search, Set, search};
+pub(crate) use signals::{predicted, residual as raw_residual};
 pub use whiten::Whitener;

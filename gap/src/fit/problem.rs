@@ -5,23 +5,18 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::Whitener;
+use super::draft::Draft;
 use super::normal::{products, slices};
 use super::rest::{Raw, rest};
+use super::signals::{Signals, peak, residual, scale, valid};
+use super::turning::{impulse, turning, turning_noise};
 use super::whiten::Loop;
-use crate::library::{Candidate, Nuisance, Offer, apply, candidates, hold, not_looked_for, nuisances, platform};
+use crate::library::{Candidate, Nuisance, Offer, candidates, hold, not_looked_for, nuisances, platform};
 use crate::record::{Record, Signal, rough};
-use crate::simulate::{Begin, Physics, Prediction, predict};
+use crate::simulate::{Begin, Physics, predict};
 
 /// Time blocks.
 pub const BLOCKS: usize = 10;
-/// Places of the beginning that are unknown, and their standard deviations.
-const STATE_SIGMA: [f64; 10] = [0.02, 2e-4, 0.1, 0.1, 3.0, 3.0, 3.0, 1e-2, 1e-2, 1.0];
-/// Place of the slow section, and what tolerances leave open of its lead over its lag.
-const SLOW_SECTION: usize = 3;
-const SLOW_UNKNOWN: f64 = 0.05;
-/// Steps in which sensitivities to the beginning are taken, over those: inside the friction's clamp, off the stops.
-pub(crate) const STATE_STEP: f64 = 1e-3;
-
 /// Share of the best fit's excess put down to the formulation, and what power of the noise may stand out by.
 const FORMULATION: f64 = 0.012;
 const NOISE_KNOWN: f64 = 1.005;
@@ -224,183 +219,6 @@ fn library_ripple(inputs: &crate::simulate::Inputs, offer: &Offer, cycles: &[f64
     candidates(inputs, &offer).into_iter().filter(|candidate| candidate.effect == "torque_ripple").collect()
 }
 
-/// What sensitivities are made from.
-struct Draft<'a> {
-    record: &'a Record,
-    base: &'a Physics,
-    begin: &'a Begin,
-    nominal: &'a Prediction,
-}
-
-/// One series a channel.
-pub(crate) type Signals = Vec<Vec<f64>>;
-
-impl Draft<'_> {
-    fn columns(&self, nuisances: &[Nuisance], candidates: &[Candidate]) -> (Columns, Vec<Signals>, Vec<f64>) {
-        let mut columns = Columns { begin: 0, nuisances: nuisances.len(), first: Vec::new() };
-        let mut sigma = Vec::new();
-        let states: Vec<usize> =
-            (0..10).filter(|&state| state != 9 || self.record.channel(Signal::GimbalAngle).is_some()).collect();
-        columns.begin = states.len();
-        let mut all: Vec<Signals> = states.par_iter().map(|&state| self.begin_column(state)).collect();
-        sigma.extend(states.iter().map(|&state| self.state_sigma(state)));
-        all.par_extend(nuisances.par_iter().map(|nuisance| {
-            let mut physics = self.base.clone();
-            nuisance.shift(&mut physics, nuisance.step);
-            self.difference(&physics, nuisance.step)
-        }));
-        sigma.extend(nuisances.iter().map(|nuisance| nuisance.sigma));
-        let probes: Vec<Vec<Signals>> = candidates.par_iter().map(|candidate| self.probes(candidate)).collect();
-        for (candidate, probes) in candidates.iter().zip(probes) {
-            columns.first.push(all.len());
-            sigma.extend(candidate.prior.iter().take(probes.len()).map(|(_, sigma)| *sigma));
-            all.extend(probes);
-        }
-        (columns, all, sigma)
-    }
-
-    /// How far a place of the beginning may be from where the log seems to begin. The slow section remembers what
-    /// the integrator took in, a step of the torque over its time constant, and shows the part of it that lead and
-    /// lag do not cancel.
-    fn state_sigma(&self, state: usize) -> f64 {
-        if state != SLOW_SECTION {
-            return STATE_SIGMA[state];
-        }
-        let servo = &self.base.config.servo;
-        let (lead_s, lag_s) = (servo.lead_time_constants_s[0], servo.lag_time_constants_s[0]);
-        2.0 * ((1.0 - lead_s / lag_s).abs() + SLOW_UNKNOWN) * peak(&self.nominal.motor_torque_nm) / lag_s
-    }
-
-    fn begin_column(&self, state: usize) -> Signals {
-        let step = STATE_STEP * self.state_sigma(state);
-        let mut begin = self.begin.clone();
-        begin.state[state] += step;
-        // it dies away
-        let rows = if state == 9 { usize::MAX } else { remembered_rows(self.record) };
-        let moved = predict(self.base, &self.record.inputs, &begin, rows);
-        difference(self.record, &moved, self.nominal, step)
-    }
-
-    fn difference(&self, physics: &Physics, step: f64) -> Signals {
-        let moved = predict(physics, &self.record.inputs, self.begin, usize::MAX);
-        difference(self.record, &moved, self.nominal, step)
-    }
-
-    fn probes(&self, candidate: &Candidate) -> Vec<Signals> {
-        candidate
-            .probes
-            .iter()
-            .map(|(values, divisor)| {
-                let mut physics = self.base.clone();
-                apply(candidate.effect, values, &mut physics);
-                self.difference(&physics, *divisor)
-            })
-            .collect()
-    }
-}
-
-/// Rows for which a prediction remembers where it began.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-pub(crate) fn remembered_rows(record: &Record) -> usize {
-    (MEMORY_S / record.inputs.period_s) as usize
-}
-
-/// The predicted samples of a channel.
-pub(crate) fn predicted(signal: Signal, prediction: &Prediction) -> &[f64] {
-    match signal {
-        Signal::GyroAngle => &prediction.gyro_angle_rad,
-        Signal::MotorTorque => &prediction.motor_torque_nm,
-        Signal::GimbalAngle => &prediction.gimbal_angle_rad,
-    }
-}
-
-/// Measured less predicted.
-pub(crate) fn residual(record: &Record, prediction: &Prediction) -> Signals {
-    let of = |channel: &crate::record::Channel| {
-        channel.values.iter().zip(predicted(channel.signal, prediction)).map(|(a, b)| a - b).collect()
-    };
-    record.channels.iter().map(of).collect()
-}
-
-/// One prediction less another, over a step.
-pub(crate) fn difference(record: &Record, moved: &Prediction, base: &Prediction, step: f64) -> Signals {
-    let of = |channel: &crate::record::Channel| {
-        let (moved, base) = (predicted(channel.signal, moved), predicted(channel.signal, base));
-        let mut column: Vec<f64> = moved.iter().zip(base).map(|(a, b)| (a - b) / step).collect();
-        column.resize(base.len(), 0.0);
-        column
-    };
-    record.channels.iter().map(of).collect()
-}
-
-fn scale(columns: &mut [Signals], by: &[f64]) {
-    columns.par_iter_mut().for_each(|signals| {
-        for (signal, by) in signals.iter_mut().zip(by) {
-            for value in signal {
-                *value *= by;
-            }
-        }
-    });
-}
-
-/// Rows at which every channel counts.
-fn valid(record: &Record) -> Vec<bool> {
-    (0..record.rows()).map(|k| record.channels.iter().all(|channel| channel.valid[k])).collect()
-}
-
-/// Every channel after an impulse of torque on the gimbal, bearings and unbalance aside.
-fn impulse(base: &Physics, record: &Record) -> Signals {
-    let mut physics = base.clone();
-    physics.config.bearing.count = 0;
-    physics.config.unbalance.x_kg_m = 0.0;
-    physics.config.unbalance.y_kg_m = 0.0;
-    let rows = 4000;
-    let zero = || vec![0.0; rows];
-    let mut inputs = crate::simulate::Inputs {
-        period_s: record.inputs.period_s,
-        accel_mps2: [zero(), zero(), zero()],
-        rate_radps: zero(),
-        ..Default::default()
-    };
-    inputs.complete(&physics.config.bearing, 0.0);
-    let mut begin = Begin::at(&physics, &inputs, 0.0, Some(0.0));
-    begin.state[0] = IMPULSE_RADPS;
-    let run = predict(&physics, &inputs, &begin, rows);
-    record.channels.iter().map(|channel| predicted(channel.signal, &run).to_vec()).collect()
-}
-
-/// Rows at which friction turns around, with what follows; and the share of them in which the noise of the rate acts.
-fn turning(base: &Physics, record: &Record, nominal: &Prediction) -> (Vec<bool>, f64) {
-    let slip = base.config.bearing.slip_rate_radps;
-    let (mut wait, mut inside) = (0_usize, 0.0);
-    let rates = record.inputs.rate_radps.iter().zip(&nominal.gimbal_rate_radps);
-    let turning: Vec<bool> = rates
-        .map(|(vehicle, gimbal)| {
-            let turns = (vehicle - gimbal).abs() < slip;
-            inside += f64::from(u8::from(turns));
-            wait = if turns { AFTER_TURNING } else { wait.saturating_sub(1) };
-            wait > 0
-        })
-        .collect();
-    let all = turning.iter().filter(|turning| **turning).count();
-    (turning, inside / all.max(1) as f64)
-}
-
-/// Torque that the noise of the logged rate makes on the slope of the friction law, over that of the impulse.
-fn turning_noise(base: &Physics, record: &Record, nominal: &Prediction) -> f64 {
-    let rate = record.rate_noise.rms_radps;
-    let level = peak(&nominal.friction_nm);
-    let impulse_nm = base.config.servo.gimbal_inertia_kg_m2 * IMPULSE_RADPS / record.inputs.period_s;
-    rate * level / base.config.bearing.slip_rate_radps / impulse_nm
-}
-
-/// Rate after the impulse [rad/s].
-const IMPULSE_RADPS: f64 = 1e-3;
-/// Time for which the platform remembers where it began [s].
-const MEMORY_S: f64 = 25.0;
-/// Rows for which the loop remembers a disturbance.
-const AFTER_TURNING: usize = 400;
-
 /// Largest value that is held for a few rows.
 fn high(values: &[f64]) -> f64 {
     values
@@ -409,8 +227,4 @@ fn high(values: &[f64]) -> f64 {
             few.iter().fold(f64::MAX, |least, value| if value.is_finite() { least.min(value.abs()) } else { 0.0 })
         })
         .fold(0.0, f64::max)
-}
-
-fn peak(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |peak, value| peak.max(value.abs()))
 }

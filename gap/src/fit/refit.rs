@@ -5,9 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use super::hypothesis::Hypothesis;
 use super::linear::Linear;
 use super::normal::{products, slices, solve};
-use super::problem::difference;
 use super::pull::Pull;
 use super::refine::linearised;
+use super::signals::difference;
 use super::{BLOCKS, Fit, Problem};
 use crate::simulate::Prediction;
 

@@ -4,8 +4,9 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::Columns;
 use super::normal::{drive, products, slices, solve};
-use super::problem::{Columns, Signals};
+use super::signals::Signals;
 
 /// Every so many rows are fitted.
 const THIN: usize = 6;

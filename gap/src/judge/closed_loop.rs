@@ -16,7 +16,7 @@ use gimbal_servo::Config;
 use super::Decision;
 use crate::close::closing;
 use crate::fit::Fit;
-use crate::record::{Record, Signal};
+use crate::record::{Channel, Record, Signal};
 use crate::simulate::{Inputs, Physics, turned};
 
 /// Not scored [s].
@@ -40,6 +40,15 @@ pub struct Yardstick {
 }
 
 impl Yardstick {
+    /// One for each channel of a log, from its rms before and after.
+    pub(crate) fn of_channels(record: &Record, before: &[f64], after: &[f64]) -> Vec<Self> {
+        let one = |((channel, &before), &after): ((&Channel, &f64), &f64)| {
+            let column = channel.signal.column();
+            Self { name: column.name(), unit: column.unit(), before, after }
+        };
+        record.channels.iter().zip(before).zip(after).map(one).collect()
+    }
+
     /// For programs.
     #[must_use]
     pub fn json(&self) -> serde_json::Value {
@@ -62,25 +71,25 @@ pub fn free_running(record: &Record, model: &ModelFile, decision: &Decision, fit
     let runs = [(&model.config, &model.effects, &nominal), (&config, &effects, &fit.physics)];
     let [before, after] = runs.map(|(config, effects, physics)| run(record, config, effects, physics));
     let (Ok(before), Ok(after)) = (before, after) else { return Vec::new() };
-    record
-        .channels
-        .iter()
-        .enumerate()
-        .map(|(place, channel)| {
-            let column = channel.signal.column();
-            let off = |run: &[Vec<f64>; 3]| {
-                let predicted = &run[index(channel.signal)];
-                let scored = (0..record.rows()).filter(|&k| channel.valid[k]);
-                let scored = scored.filter(|&k| k as f64 * record.inputs.period_s >= COMES_IN_S);
-                // the angle has no zero of its own
-                let off: Vec<f64> = scored.map(|k| channel.values[k] - predicted[k]).collect();
-                let level = if channel.signal == Signal::GimbalAngle { mean(&off) } else { 0.0 };
-                mean(&off.iter().map(|value| (value - level).powi(2)).collect::<Vec<_>>()).sqrt()
-            };
-            debug_assert!(place < 3);
-            Yardstick { name: column.name(), unit: column.unit(), before: off(&before), after: off(&after) }
-        })
-        .collect()
+    let off = |run: &[Vec<f64>; 3]| -> Vec<f64> {
+        let of = |channel: &Channel| {
+            channel.values.iter().zip(&run[index(channel.signal)]).map(|(log, plant)| log - plant).collect()
+        };
+        in_step(record, &record.channels.iter().map(of).collect::<Vec<_>>())
+    };
+    Yardstick::of_channels(record, &off(&before), &off(&after))
+}
+
+/// Rms of residuals from where a run has come into step, channel by channel; the angle has no zero of its own.
+pub(crate) fn in_step(record: &Record, residuals: &[Vec<f64>]) -> Vec<f64> {
+    let of = |(residual, channel): (&Vec<f64>, &Channel)| {
+        let scored = (0..record.rows()).filter(|&k| channel.valid[k]);
+        let scored = scored.filter(|&k| k as f64 * record.inputs.period_s >= COMES_IN_S);
+        let off: Vec<f64> = scored.map(|k| residual[k]).collect();
+        let level = if channel.signal == Signal::GimbalAngle { mean(&off) } else { 0.0 };
+        mean(&off.iter().map(|value| (value - level).powi(2)).collect::<Vec<_>>()).sqrt()
+    };
+    residuals.iter().zip(&record.channels).map(of).collect()
 }
 
 fn index(signal: Signal) -> usize {
@@ -142,31 +151,22 @@ fn run(
 /// One step ahead, channel by channel.
 #[must_use]
 pub fn one_step(record: &Record, before: &[Vec<f64>], after: &[Vec<f64>]) -> Vec<Yardstick> {
-    record
-        .channels
-        .iter()
-        .enumerate()
-        .map(|(place, channel)| {
-            let column = channel.signal.column();
-            let weights = weights(&after[place], &channel.valid);
-            let score = |residual: &[f64]| {
-                let steps = (ORDER..residual.len()).filter(|&k| channel.valid[k - ORDER..=k].iter().all(|own| *own));
-                let off: Vec<f64> = steps
-                    .map(|k| {
-                        let told: f64 = weights.iter().enumerate().map(|(i, a)| a * residual[k - 1 - i]).sum();
-                        (residual[k] - told).powi(2)
-                    })
-                    .collect();
-                mean(&off).sqrt()
-            };
-            Yardstick {
-                name: column.name(),
-                unit: column.unit(),
-                before: score(&before[place]),
-                after: score(&after[place]),
-            }
-        })
-        .collect()
+    let of_channels: Vec<_> =
+        record.channels.iter().zip(after).map(|(channel, after)| weights(after, &channel.valid)).collect();
+    let score = |place: usize, residual: &[f64]| {
+        let (valid, weights) = (&record.channels[place].valid, &of_channels[place]);
+        let steps = (ORDER..residual.len()).filter(|&k| valid[k - ORDER..=k].iter().all(|own| *own));
+        let off: Vec<f64> = steps
+            .map(|k| {
+                let told: f64 = weights.iter().enumerate().map(|(i, a)| a * residual[k - 1 - i]).sum();
+                (residual[k] - told).powi(2)
+            })
+            .collect();
+        mean(&off).sqrt()
+    };
+    let [before, after] = [before, after]
+        .map(|residuals| residuals.iter().enumerate().map(|(place, own)| score(place, own)).collect::<Vec<_>>());
+    Yardstick::of_channels(record, &before, &after)
 }
 
 /// Of the samples before, by Levinson's recursion on the residual's autocorrelation.

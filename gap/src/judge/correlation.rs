@@ -1,9 +1,8 @@
 //! Which fitted values move together, and which stand at the end of their range.
 
 use gimbal_plant::{Bound, Effect};
-use nalgebra::{DMatrix, DVector};
 
-use crate::fit::{Fit, Problem, drive, slices, solve};
+use crate::fit::{Fit, Linear, Problem, solve};
 
 /// Correlations are told from this size on.
 const TOLD: f64 = 0.3;
@@ -50,24 +49,16 @@ pub fn correlations(problem: &Problem, fit: &Fit) -> Vec<Correlation> {
     if names.len() != fixed + fit.sensitivities.len() {
         return Vec::new();
     }
-    let mut columns = slices(&problem.whitened[..fixed]);
-    columns.extend(slices(&fit.sensitivities));
-    let mut gram = DMatrix::zeros(columns.len(), columns.len());
-    gram.view_mut((0, 0), (fixed, fixed)).copy_from(&problem.gram.view((0, 0), (fixed, fixed)));
-    for place in fixed..columns.len() {
-        let products = drive(&columns, columns[place]);
-        gram.set_column(place, &products);
-        gram.set_row(place, &products.transpose());
-    }
-    let chosen: Vec<usize> = (0..columns.len()).collect();
-    let Some(solution) = solve(&gram, &DVector::zeros(columns.len()), &chosen, &weights) else { return Vec::new() };
+    let (gram, drive) = Linear::of(problem).joined(&fit.sensitivities, &fit.residual);
+    let chosen: Vec<usize> = (0..drive.len()).collect();
+    let Some(solution) = solve(&gram, &drive, &chosen, &weights) else { return Vec::new() };
     let of = |a: usize, b: usize| {
         let covariance = &solution.covariance;
         covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).max(1e-300).sqrt()
     };
     own.iter()
         .flat_map(|&value| {
-            let mut all: Vec<(usize, f64)> = (begin..columns.len())
+            let mut all: Vec<(usize, f64)> = (begin..drive.len())
                 .filter(|other| *other != value)
                 .map(|other| (other, of(value, other)))
                 .filter(|(_, correlation)| correlation.abs() > TOLD)

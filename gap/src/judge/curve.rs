@@ -1,7 +1,6 @@
 //! The friction curve as the log has it: the fitted friction and what the motor torque has beside the prediction, in
 //! bins of the bearing's rate, with two standard errors to either side.
 
-use super::decide::names;
 use crate::fit::{Fit, Problem, raw_residual};
 use crate::record::Signal;
 use crate::simulate::Prediction;
@@ -33,7 +32,6 @@ pub fn curve(problem: &Problem, fit: &Fit, nominal: &Prediction) -> Vec<CurvePoi
     let Some(place) = record.channels.iter().position(|channel| channel.signal == Signal::MotorTorque) else {
         return Vec::new();
     };
-    debug_assert_eq!(names(problem, fit).len(), fit.set.0.len());
     let residual = &raw_residual(record, &fit.prediction)[place];
     let valid = &record.channels[place].valid;
     let rate: Vec<f64> =

@@ -11,6 +11,7 @@ mod left_over;
 mod portrait;
 mod shrink;
 
+pub(crate) use closed_loop::in_step;
 pub use closed_loop::{Yardstick, free_running, one_step};
 pub use correlation::{Correlation, bounds_hit, correlations};
 pub use curve::{CurvePoint, curve};

@@ -52,14 +52,11 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
     let name = effect.name();
     let seconds = inputs.len() as f64 * inputs.period_s;
     match name {
-        "friction_level" | "loop_gain" | "motor_lag" | "gyro_damping" | "angular_momentum" | "gimbal_inertia"
-        | "pickoff_scale" => {
-            vec![released(effect, release_of(name))]
-        }
-        "torque_scale" if offer.sees_torque => vec![released(effect, &["torque_scale"])],
-        "mass_unbalance" => vec![released(effect, &["unbalance x", "unbalance y"])],
+        // a scale of the torque shows where the torque is measured
+        "torque_scale" if !offer.sees_torque => Vec::new(),
         // the pick-off shows the stop itself, and its steps
-        "stop_angle" | "pickoff_quantisation" | "torque_scale" => Vec::new(),
+        "stop_angle" | "pickoff_quantisation" => Vec::new(),
+        _ if !releases(name).is_empty() => vec![released(effect, releases(name))],
         "float_torque" if !offer.sees_gimbal => Vec::new(),
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
@@ -88,15 +85,19 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
     }
 }
 
-fn release_of(name: &'static str) -> &'static [&'static str] {
-    match name {
+/// The nominal parameters that an effect shifts; none where it adds something.
+pub(crate) fn releases(effect: &str) -> &'static [&'static str] {
+    match effect {
         "friction_level" => &["friction_level"],
+        "mass_unbalance" => &["unbalance x", "unbalance y"],
         "loop_gain" => &["loop_gain"],
         "motor_lag" => &["motor_lag"],
         "gyro_damping" => &["gyro_damping"],
         "angular_momentum" => &["angular_momentum"],
         "gimbal_inertia" => &["gimbal_inertia"],
-        _ => &["pickoff_scale"],
+        "pickoff_scale" => &["pickoff_scale"],
+        "torque_scale" => &["torque_scale"],
+        _ => &[],
     }
 }
 

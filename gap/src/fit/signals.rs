@@ -1,0 +1,57 @@
+//! Series of all channels: predicted, measured less predicted, one prediction less another.
+
+use rayon::prelude::*;
+
+use crate::record::{Record, Signal};
+use crate::simulate::Prediction;
+
+/// One series a channel.
+pub(crate) type Signals = Vec<Vec<f64>>;
+
+/// The predicted samples of a channel.
+pub(crate) fn predicted(signal: Signal, prediction: &Prediction) -> &[f64] {
+    match signal {
+        Signal::GyroAngle => &prediction.gyro_angle_rad,
+        Signal::MotorTorque => &prediction.motor_torque_nm,
+        Signal::GimbalAngle => &prediction.gimbal_angle_rad,
+    }
+}
+
+/// Measured less predicted.
+pub(crate) fn residual(record: &Record, prediction: &Prediction) -> Signals {
+    let of = |channel: &crate::record::Channel| {
+        channel.values.iter().zip(predicted(channel.signal, prediction)).map(|(a, b)| a - b).collect()
+    };
+    record.channels.iter().map(of).collect()
+}
+
+/// One prediction less another, over a step.
+pub(crate) fn difference(record: &Record, moved: &Prediction, base: &Prediction, step: f64) -> Signals {
+    let of = |channel: &crate::record::Channel| {
+        let (moved, base) = (predicted(channel.signal, moved), predicted(channel.signal, base));
+        let mut column: Vec<f64> = moved.iter().zip(base).map(|(a, b)| (a - b) / step).collect();
+        column.resize(base.len(), 0.0);
+        column
+    };
+    record.channels.iter().map(of).collect()
+}
+
+pub(crate) fn scale(columns: &mut [Signals], by: &[f64]) {
+    columns.par_iter_mut().for_each(|signals| {
+        for (signal, by) in signals.iter_mut().zip(by) {
+            for value in signal {
+                *value *= by;
+            }
+        }
+    });
+}
+
+/// Rows at which every channel counts.
+pub(crate) fn valid(record: &Record) -> Vec<bool> {
+    (0..record.rows()).map(|k| record.channels.iter().all(|channel| channel.valid[k])).collect()
+}
+
+/// Largest size of a value.
+pub(crate) fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |peak, value| peak.max(value.abs()))
+}
