@@ -84,6 +84,13 @@ fn contract_known_good_parts_are_not_blamed() {
         assert!(!names(&diagnosis).contains(&name), "{:?}", names(&diagnosis));
         assert!(!diagnosis.detectable.iter().any(|own| own.effect == name), "{name}");
     }
+    // The page says what was left out.
+    let page = gimbal_gap::report::html(&diagnosis, "log.csv");
+    let (_, left_out) = page.split_once("Not looked for").expect("a section");
+    for name in &diagnosis.not_looked_for {
+        assert!(left_out.contains(&format!("<td>{name}</td>")), "{name}");
+    }
+    assert!(diagnosis.not_looked_for.contains(&"gyro_damping"));
     // The gap is there all the same, and the held parameter stays where it is.
     assert_ne!(diagnosis.verdict().name(), "no_gap");
     let fitted = diagnosis.fit.expect("a fit").physics.config.gyro.damping_nm_s_per_rad;

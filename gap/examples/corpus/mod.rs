@@ -12,6 +12,9 @@
     reason = "a corpus for experiments, used by several of them, each in part"
 )]
 
+pub mod detectable;
+pub mod draw;
+
 use std::f64::consts::TAU;
 
 use gimbal_plant::{Effect, Plant, Row};
@@ -33,7 +36,22 @@ pub enum Excitation {
 
 impl Excitation {
     pub const ALL: [Self; 3] = [Self::RateTable, Self::Manoeuvre, Self::Flight];
+
+    /// As tables call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RateTable => "rate table",
+            Self::Manoeuvre => "manoeuvre",
+            Self::Flight => "flight",
+        }
+    }
 }
+
+/// White noise of the sensors: accelerometers, rates, pick-off, motor torque.
+pub const ACCEL_NOISE_MPS2: f64 = 0.01;
+pub const RATE_NOISE_RADPS: f64 = 2e-4;
+pub const PICKOFF_NOISE_RAD: f64 = 2e-6;
+pub const TORQUE_NOISE_NM: f64 = 1e-5;
 
 /// One simulated log.
 #[derive(Debug, Clone)]
@@ -170,26 +188,40 @@ pub struct Simulated {
 }
 
 pub fn simulate(case: &Case) -> Simulated {
+    simulate_platform(case, &drifted(&Config::consistent(), case.drift, case.seed))
+}
+
+/// The same of a given platform.
+pub fn simulate_platform(case: &Case, platform: &Config) -> Simulated {
     let rows = rows(case.excitation, case.seconds, case.seed);
-    let config = drifted(&Config::consistent(), case.drift, case.seed);
-    let mut plant = Plant::new(&config).expect("drifted").with_tolerance(1e-8);
-    for (name, values) in &case.effects {
+    simulate_rows(&rows, platform, &case.effects, case.noise, &mut rng(case.seed, 3))
+}
+
+/// The same of given rows and noise.
+pub fn simulate_rows(
+    rows: &[Row],
+    platform: &Config,
+    effects: &[(&'static str, Vec<f64>)],
+    share: f64,
+    rng: &mut ChaCha8Rng,
+) -> Simulated {
+    let mut plant = Plant::new(platform).expect("drifted").with_tolerance(1e-8);
+    for (name, values) in effects {
         plant = plant.with_effect(Effect::from_name(name).expect("known"), values).expect("legal");
     }
-    let rng = &mut rng(case.seed, 3);
-    let mut noise = |sigma: f64| -> f64 { case.noise * sigma * rng.sample::<f64, _>(StandardNormal) };
+    let mut noise = |sigma: f64| -> f64 { share * sigma * rng.sample::<f64, _>(StandardNormal) };
     let mut columns: [Vec<f64>; 9] = Default::default();
     for (k, sample) in plant.run_from(plant.settled(&rows[0]), rows.iter().copied()).enumerate() {
         let inputs = sample.logged.inputs;
         let values = [
             k as f64 * 1e-3,
-            inputs.accel_x_mps2 + noise(0.01),
-            inputs.accel_y_mps2 + noise(0.01),
-            inputs.accel_z_mps2 + noise(0.01),
-            inputs.vehicle_rate_radps + noise(2e-4),
-            inputs.cross_rate_radps + noise(2e-4),
-            sample.logged.gyro_angle_rad + noise(2e-6),
-            sample.logged.motor_torque_nm + noise(1e-5),
+            inputs.accel_x_mps2 + noise(ACCEL_NOISE_MPS2),
+            inputs.accel_y_mps2 + noise(ACCEL_NOISE_MPS2),
+            inputs.accel_z_mps2 + noise(ACCEL_NOISE_MPS2),
+            inputs.vehicle_rate_radps + noise(RATE_NOISE_RADPS),
+            inputs.cross_rate_radps + noise(RATE_NOISE_RADPS),
+            sample.logged.gyro_angle_rad + noise(PICKOFF_NOISE_RAD),
+            sample.logged.motor_torque_nm + noise(TORQUE_NOISE_NM),
             sample.gimbal_angle_rad,
         ];
         for (column, value) in columns.iter_mut().zip(values) {
@@ -197,6 +229,20 @@ pub fn simulate(case: &Case) -> Simulated {
         }
     }
     Simulated { columns }
+}
+
+/// Step of a pick-off of 16 bit over +-10 mrad [rad].
+pub const PICKOFF_STEP_RAD: f64 = 20e-3 / 65536.0;
+
+impl Simulated {
+    /// The pick-off's column through its converter.
+    #[must_use]
+    pub fn converted(mut self) -> Self {
+        for value in &mut self.columns[6] {
+            *value = (*value / PICKOFF_STEP_RAD).round() * PICKOFF_STEP_RAD;
+        }
+        self
+    }
 }
 
 /// The same as a log.

@@ -219,6 +219,8 @@ fn tables(out: &mut String, diagnosis: &Diagnosis) {
     let rows = diagnosis.bounds_hit.iter().map(|hit| format!("<tr><td>{}</td></tr>", escaped(hit)));
     table("At the end of its range", "<th>value</th>", rows.collect());
     table("What would have been seen", "<th>effect</th><th>smallest size</th>", sizes.collect());
+    let rows = diagnosis.not_looked_for.iter().map(|effect| format!("<tr><td>{effect}</td></tr>"));
+    table("Not looked for: known to be good, or in the model already", "<th>effect</th>", rows.collect());
 }
 
 pub(crate) fn escaped(text: &str) -> String {
