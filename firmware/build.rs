@@ -1,10 +1,13 @@
-//! Builds the law that the program `flight` flies, so that the target needs no doubles for it; chooses the board, gives the linker its memory map and the program its constants.
+//! Chooses the board, gives the linker its memory map and the programs their constants; prepares what the program `flight`
+//! flies with, so that the target needs no doubles for it.
 //!
 //! The board is `GIMBAL_BOARD`, or the default one of the target. A linker looks for `memory.x` in its working
 //! directory first, which is the root of the workspace, so the default board's map would shadow every other: only the
 //! default board is linked through `memory.x`; for the others the map is written into the link script itself.
 
-use gimbal_servo::{Fixed, Law};
+#[path = "build/minute.rs"]
+mod minute;
+
 use serde::Deserialize;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -56,10 +59,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=boards");
     println!("cargo:rerun-if-changed=../memory.x");
     println!("cargo:rerun-if-changed=vectors");
+    for source in ["build", "build.rs", "src/noise.rs", "src/profile.rs"] {
+        println!("cargo:rerun-if-changed={source}");
+    }
     println!("cargo:rerun-if-env-changed=GIMBAL_BOARD");
     let out = PathBuf::from(env::var("OUT_DIR")?);
-    write_vectors(&out)?;
-    write_law(&out)?;
+    minute::write(&out, &write_vectors(&out)?)?;
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
         return write_constants(&out, "host", 1_000_000, [None; 2], (None, None), u32::MAX);
     }
@@ -138,43 +143,15 @@ fn grouped(address: u32) -> String {
 }
 
 /// The committed flight as an array: the boards have no files.
-fn write_vectors(out: &Path) -> Result<(), Box<dyn Error>> {
+fn write_vectors(out: &Path) -> Result<Vec<[i16; 4]>, Box<dyn Error>> {
     let text = fs::read_to_string("vectors/flight.csv")?;
-    let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).skip(1).collect();
-    Ok(fs::write(out.join("flight.rs"), format!("[\n    [{}],\n]\n", rows.join("],\n    [")))?)
-}
-
-/// Images of the law that `flight` flies, and what a count of its sensor is to each number system.
-fn write_law(out: &Path) -> Result<(), Box<dyn Error>> {
-    // 1 mm/s2, 0.001 deg/s.
-    const COUNTS: [f64; 2] = [1e-3, 1e-3 * std::f64::consts::PI / 180.0];
-    let config = gimbal_servo::Config::consistent();
-    let single = config.build::<f32>()?;
-    let mut image = vec![0; Law::<f32>::IMAGE_LEN];
-    single.to_image(&mut image)?;
-    fs::write(out.join("law-f32.image"), image)?;
-    let fixed = config.build::<Fixed>()?;
-    let mut image = vec![0; Law::<Fixed>::IMAGE_LEN];
-    fixed.to_image(&mut image)?;
-    fs::write(out.join("law-fixed.image"), image)?;
-
-    let scales = [fixed.units().accel, fixed.units().rate];
-    // With 16 bits of fraction.
-    let factors: Vec<String> = COUNTS
-        .iter()
-        .zip(scales)
-        .map(|(count, scale)| (count * 2.0_f64.powi(31 + 16 - scale)).round().to_string())
-        .collect();
-    let [accel, rate] = COUNTS.map(|count| count.to_string().parse::<f32>());
-    let (accel, rate) = (accel?, rate?);
-    let text = format!(
-        "/// What a count is to the law.\n#[expect(clippy::unreadable_literal, reason = \"made by the build script\")]\n\
-         const F32_COUNTS: [f32; 2] = [{accel:?}, {rate:?}];\n/// Likewise.\n\
-         #[expect(clippy::unreadable_literal, reason = \"made by the build script\")]\n\
-         const FIXED_COUNTS: [i32; 2] = [{}];\n",
-        factors.join(", ")
-    );
-    Ok(fs::write(out.join("minute.rs"), text)?)
+    let mut rows = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with('#')).skip(1) {
+        let cells = line.split(',').map(str::parse).collect::<Result<Vec<i16>, _>>()?;
+        rows.push(<[i16; 4]>::try_from(cells).map_err(|_| format!("vectors/flight.csv: `{line}` has not four cells"))?);
+    }
+    fs::write(out.join("flight.rs"), format!("{rows:?}"))?;
+    Ok(rows)
 }
 
 /// Link arguments for every program of this package.

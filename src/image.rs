@@ -3,7 +3,7 @@
 //! | bytes | content |
 //! |---|---|
 //! | 4 | `GSLW` |
-//! | 1 | version of this layout: 2 |
+//! | 1 | version of this layout: 3 |
 //! | 1 | which law: `a` an axis, `e` an estimator, `m` a monitor |
 //! | 1 | number system: `f` f32, `q` fixed point |
 //! | 1 | 0 |
@@ -34,7 +34,7 @@ use crate::stored::{Reader, Stored, Writer};
 use crate::{estimator, monitor};
 
 const MAGIC: [u8; 4] = *b"GSLW";
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 const HEADER_LEN: usize = 12;
 const DIGEST_LEN: usize = 8;
 

@@ -114,14 +114,7 @@ impl Case {
 }
 
 /// x, y, z [cm/s2] and rate [0.01 deg/s], 100 rows a second.
-static FLIGHT_ROWS: [[i16; 4]; 1001] = include!(concat!(env!("OUT_DIR"), "/flight.rs"));
-
-/// The recorded flight at 1 kHz in tenths of the table's units, interpolated linearly: exactly, in integers.
-pub(crate) fn counts(k: u32) -> [i32; 4] {
-    let (at, part) = ((k / 10) as usize, (k % 10).cast_signed());
-    let [row, next] = [at, at + 1].map(|i| FLIGHT_ROWS.get(i).copied().unwrap_or_default().map(i32::from));
-    core::array::from_fn(|i| 10 * row[i] + (next[i] - row[i]) * part)
-}
+pub(crate) static FLIGHT_ROWS: [[i16; 4]; 1001] = include!(concat!(env!("OUT_DIR"), "/flight.rs"));
 
 /// The recorded flight at 1 kHz, interpolated linearly.
 fn flight_row(k: u32) -> Input<f64> {

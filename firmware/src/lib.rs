@@ -23,6 +23,8 @@ pub mod frames;
 pub mod log;
 pub mod minute;
 pub mod noise;
+pub mod onboard;
+pub mod profile;
 
 /// The number system that the core is good at.
 #[cfg(all(target_os = "none", target_abi = "eabihf"))]

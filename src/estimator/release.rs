@@ -31,6 +31,66 @@ pub(crate) struct Law<N: Number> {
 
 stored!([N: Number] Law<N> { rate, keep, take });
 
+/// What a p of 1 over one period has made of w and theta since.
+#[derive(Clone, Copy)]
+struct Pulse<N> {
+    w: N,
+    theta: N,
+    /// What its end adds to w one period later.
+    end: N,
+}
+
+impl<N: Number> Pulse<N> {
+    /// Of the period that ends now: half of it acts.
+    fn now(law: &Law<N>) -> Self {
+        let w = N::head(law.take * N::ONE).half();
+        Self { w, theta: w.half(), end: w }
+    }
+
+    /// One period later.
+    fn age(&mut self, law: &Law<N>) {
+        let w = N::head(law.keep * self.w) + self.end;
+        self.theta = self.theta + self.w.half() + w.half();
+        (self.w, self.end) = (w, N::ZERO);
+    }
+}
+
+/// What pulses, one for each period, have made of theta and w together.
+#[derive(Clone, Copy)]
+struct Sum<N: Number> {
+    theta: N::Wide,
+    w: N::Wide,
+    /// The same for pulses of 1; theta in the full scale [`SUM_SCALE`], for it grows with the periods.
+    theta_of_one: N,
+    w_of_one: N,
+}
+
+/// Holds [`RATES`].
+const SUM_SCALE: u32 = 4;
+
+impl<N: Number> Default for Sum<N> {
+    fn default() -> Self {
+        Self { theta: N::Wide::default(), w: N::Wide::default(), theta_of_one: N::ZERO, w_of_one: N::ZERO }
+    }
+}
+
+impl<N: Number> Sum<N> {
+    fn add(&mut self, pulse: &Pulse<N>, p: N) {
+        self.theta = self.theta + pulse.theta.product(p);
+        self.w = self.w + pulse.w.product(p);
+        self.theta_of_one = self.theta_of_one + pulse.theta.shift_down(SUM_SCALE);
+        self.w_of_one = self.w_of_one + pulse.w;
+    }
+
+    /// theta and w, every pulse less `base`.
+    fn above(&self, base: N) -> (N, N) {
+        (
+            N::narrow(self.theta - N::widen_shifted(self.theta_of_one.product(base), SUM_SCALE)),
+            N::narrow(self.w - self.w_of_one.product(base)),
+        )
+    }
+}
+
 /// Where the release was, and what theta and phi' have done since.
 #[derive(Clone, Copy)]
 pub(crate) struct Fall<N> {
@@ -66,10 +126,13 @@ impl<N: Number> Law<N> {
     /// From how far theta has fallen and the balance's last rates, the latest first, all mirrored to the positive stop.
     pub(crate) fn fall(&self, fallen: N, rates: &[N; RATES]) -> Fall<N> {
         let [latest, before, ..] = *rates;
-        let (mut last, mut last_rate) = ((N::ZERO, N::ZERO), latest);
-        for periods in 1..RATES {
-            let rate = rates[periods];
-            let (theta, w) = self.follow(&rates[..=periods], rate);
+        let since_then = |rate: N| self.rate.at(&[rate - latest]);
+        let (mut last, mut last_rate, mut last_p) = ((N::ZERO, N::ZERO), latest, N::ZERO);
+        let (mut pulse, mut sum) = (Pulse::now(self), Sum::default());
+        for &rate in &rates[1..] {
+            let p = since_then(rate);
+            sum.add(&pulse, last_p);
+            let (theta, w) = sum.above(p);
             if -theta >= fallen {
                 let part = (fallen + last.0).ratio(last.0 - theta);
                 let step = (last_rate - rate).abs();
@@ -79,23 +142,12 @@ impl<N: Number> Law<N> {
                     slope: last.1 + (w - last.1).times(part),
                 };
             }
-            (last, last_rate) = ((theta, w), rate);
+            (last, last_rate, last_p) = ((theta, w), rate, p);
+            pulse.age(self);
         }
         // The disturbance has changed on the stop: the balance says nothing of the release.
         let excess = rates[USUAL];
         Fall { excess, excess_bound: (excess - latest).abs() + excess.abs().half().half(), slope: -fallen.half() }
-    }
-
-    /// theta and w that the rates, the latest first, have made since the rate was `from`.
-    fn follow(&self, rates: &[N], from: N) -> (N, N) {
-        let (mut theta, mut w, mut p) = (N::ZERO, N::ZERO, N::ZERO);
-        for rate in rates.iter().rev().skip(1) {
-            let now = self.rate.at(&[*rate - from]);
-            let next = N::head(self.keep * w + self.take * (p.half() + now.half()));
-            theta = theta + w.half() + next.half();
-            (w, p) = (next, now);
-        }
-        (theta, w)
     }
 
     /// The correction for an error `excess` of phi' times the time since contact, measured to `reading`.

@@ -17,7 +17,7 @@ const BLOCK: u32 = 32;
 const LARGEST: f64 = 8.0;
 /// k: what m must exceed for g to grow.
 const ALLOWANCE: f64 = 1.25;
-/// Full scales of m and of g.
+/// Full scales of m and of g. A mean of squares has the residual's twice, a variance likewise.
 const M_SCALE: i32 = 4;
 const G_SCALE: i32 = 10;
 /// Blocks in a row within the clamp's zone from which the bearing creeps instead of passing through.
@@ -73,9 +73,10 @@ pub struct Report<N> {
 /// The test, built once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law<N: Number> {
-    /// From theta's full scales, measured and modelled, to the residual's.
-    measured_shift: u32,
+    /// From theta's full scale as modelled to that as measured, and from there to the residual's: theta itself may be far
+    /// larger than any residual.
     modelled_shift: u32,
+    residual_shift: u32,
     slip_rate: N,
     /// Variance of a block's sum for the pick-off's noise.
     noise: N,
@@ -96,7 +97,7 @@ pub struct Law<N: Number> {
 }
 
 stored!([N: Number] Law<N> {
-    measured_shift, modelled_shift, slip_rate, noise, zone, share, decay, share_of_block, allowance, largest,
+    modelled_shift, residual_shift, slip_rate, noise, zone, share, decay, share_of_block, allowance, largest,
     threshold, exponent, felt,
 });
 
@@ -146,16 +147,16 @@ impl Config {
         let (gain, felt) = response(&modes, axis.period_s);
         let noise = self.gyro_noise_rad;
         let exponent = N::exponent(256.0 * noise);
-        // Sums of a block are means, so that they fit: 32 squares, each over 32. Variances: the full scale 2^4 times that.
-        let square = 2 * exponent + M_SCALE;
+        // Sums of a block are means, so that they fit: 32 squares, each over 32.
+        let square = 2 * exponent;
         let rows_an_hour = 3600.0 / (f64::from(BLOCK) * axis.period_s);
         let root = lundberg();
         let threshold = libm::log(rows_an_hour / self.false_alarms_per_hour) / root;
         // The clamp turns the rate's noise into torque; this is what theta would have if the bearing stayed there.
         let zone = gain * self.rate_noise_radps / axis.bearing.slip_rate_radps;
         Ok(Law {
-            measured_shift: (gyro_exponent - exponent).max(0).unsigned_abs(),
-            modelled_shift: (units.gyro_angle - exponent).max(0).unsigned_abs(),
+            modelled_shift: (units.gyro_angle - gyro_exponent).max(0).unsigned_abs(),
+            residual_shift: (gyro_exponent - exponent).max(0).unsigned_abs(),
             slip_rate: N::quantise(axis.bearing.slip_rate_radps + 4.0 * self.rate_noise_radps, units.rate),
             noise: N::quantise(noise * noise, square),
             zone: ScaledRow::build([zone], [units.torque], exponent),
@@ -199,7 +200,7 @@ impl<N: Number> Law<N> {
         }
         let mut residual = N::ZERO;
         if let Some(measured) = measured {
-            residual = measured.shift_up(self.measured_shift) - modelled.shift_up(self.modelled_shift);
+            residual = (measured - modelled.shift_up(self.modelled_shift)).shift_up(self.residual_shift);
         }
         if matches!(model.regime, ModelRegime::Held(_)) {
             state.saturated = true;
@@ -238,14 +239,14 @@ impl<N: Number> Law<N> {
             let passing = self.zone.at(&[state.level]);
             let twice = passing + passing;
             let deviation = if state.crept { twice + twice } else { passing };
-            variance = variance + deviation.times(deviation).shift_down(M_SHIFT);
+            variance = variance + deviation.times(deviation);
         }
         let share = self.share.at(&[state.peak]);
-        variance = variance + share.times(share).shift_down(M_SHIFT);
+        variance = variance + share.times(share);
         state.peak = N::head(self.decay * state.peak);
         // A mean of 32 squares; fixed point has room for nothing else on the way, either.
         let mean = if N::HAS_SCALES { state.sum } else { N::head(self.share_of_block * state.sum) };
-        let m = mean.ratio(variance).least(self.largest);
+        let m = mean.shift_down(M_SHIFT).ratio(variance).least(self.largest);
         (state.sum, state.rows) = (N::ZERO, 0);
         if state.since_saturation < PAUSE {
             state.regime = Regime::Saturated;

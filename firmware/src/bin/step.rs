@@ -1,4 +1,5 @@
-//! The step alone, as functions of their own: what the gates examine and the budget measures.
+//! The step alone, and estimator and gap monitor alone, as functions of their own: what the gates examine and the budget
+//! measures.
 //!
 //! Linked with `panic-never`, whose panic handler exists in no library: where a panic can be reached the link fails.
 //! There is no global allocator, so code that allocates does not build either.
@@ -14,7 +15,8 @@ mod target {
     // Symbols that the image keeps by name: unmangled names are unsafe because two could be equal.
     #![allow(unsafe_code)]
 
-    use gimbal_servo::{Fixed, Input, Law, Number, Output, State};
+    use gimbal_servo::estimator::{self, Estimate, Flags, Measured};
+    use gimbal_servo::{Faults, Fixed, Input, Law, Number, Output, State, monitor};
     #[cfg(not(feature = "panic-allowed"))]
     use panic_never as _;
 
@@ -42,6 +44,45 @@ mod target {
     #[inline(always)]
     fn step<N: Number>(law: &Law<N>, state: &mut State<N>, input: &Input<N>, output: &mut Output<N>) {
         *output = law.step(state, *input);
+        spoil();
+    }
+
+    /// What estimator and monitor take, and what they give.
+    pub(crate) struct Aids<'a, N: Number> {
+        laws: (&'a Law<N>, &'a estimator::Law<N>, &'a monitor::Law<N>),
+        model: &'a State<N>,
+        faults: Faults,
+        measured: Measured<N>,
+        states: (estimator::State<N>, monitor::State<N>),
+        told: (Estimate<N>, monitor::Report<N>),
+    }
+
+    /// Named in the image and in `xtask/src/board/gates.rs`.
+    #[unsafe(no_mangle)]
+    extern "C" fn aids_f32(aids: &mut Aids<f32>) {
+        help(aids);
+    }
+
+    /// Named in the image and in `xtask/src/board/gates.rs`.
+    #[unsafe(no_mangle)]
+    extern "C" fn aids_fixed(aids: &mut Aids<Fixed>) {
+        help(aids);
+    }
+
+    #[inline(always)]
+    fn help<N: Number>(aids: &mut Aids<N>) {
+        let Aids { laws: (axis, estimator, monitor), model, faults, measured, states: (state, watch), told } = aids;
+        let estimate = estimator.step(state, measured, axis, model, *faults);
+        if estimate.flags.contains(Flags::SATURATED) {
+            monitor.pause(watch);
+        }
+        *told = (estimate, monitor.step(watch, measured.gyro_angle_rad, model));
+        spoil();
+    }
+
+    /// Does one thing that is forbidden, if a feature asks for it.
+    #[inline(always)]
+    fn spoil() {
         #[cfg(feature = "bad-panic")]
         bad::panic();
         #[cfg(feature = "bad-double")]
@@ -56,9 +97,11 @@ mod target {
 
     type Step<N> = extern "C" fn(&Law<N>, &mut State<N>, &Input<N>, &mut Output<N>);
 
-    /// Keeps both in the image.
+    type Help<N> = extern "C" fn(&mut Aids<'_, N>);
+
+    /// Keeps them in the image.
     #[used]
-    static STEPS: (Step<f32>, Step<Fixed>) = (step_f32, step_fixed);
+    static STEPS: (Step<f32>, Step<Fixed>, Help<f32>, Help<Fixed>) = (step_f32, step_fixed, aids_f32, aids_fixed);
 
     /// One thing each that the step must not do.
     #[cfg(any(

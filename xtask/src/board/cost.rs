@@ -29,11 +29,14 @@ pub(crate) struct Cost {
     pub(crate) errors_ppm: BTreeMap<String, u64>,
     /// Code that the step reaches, with the constants among it.
     pub(crate) code_bytes: u32,
-    /// Constants in sections of their own, of both number systems together.
+    /// Constants in sections of their own: of both number systems, estimator and monitor among them.
     pub(crate) constant_bytes: u32,
     pub(crate) static_ram_bytes: u32,
     pub(crate) stack_bytes: u32,
-    /// The calls that take the most stack.
+    /// Code that estimator and monitor reach, and the most stack they take.
+    pub(crate) aids_code_bytes: u32,
+    pub(crate) aids_stack_bytes: u32,
+    /// The calls of the step that take the most stack.
     pub(crate) deepest: String,
     /// Functions of the run-time library that the step calls.
     pub(crate) library: Vec<String>,
@@ -44,8 +47,8 @@ pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
     let mut costs = BTreeMap::new();
     let step = Image::read(&image::step(board, None).or_else(|_| image::step(board, Some("panic-allowed")))?)?;
     let functions = elf::functions(&step)?;
-    for (number, root) in gates::ROOTS {
-        let reach = Reach::from(&functions, root)?;
+    for (number, [root, aids]) in gates::ROOTS {
+        let (reach, aids) = (Reach::from(&functions, root)?, Reach::from(&functions, aids)?);
         let names = reach.functions.iter().flat_map(|(function, _)| &function.names);
         costs.insert(
             number,
@@ -54,6 +57,8 @@ pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
                 constant_bytes: step.section_bytes(".rodata"),
                 static_ram_bytes: step.section_bytes(".data") + step.section_bytes(".bss"),
                 stack_bytes: reach.stack_bytes,
+                aids_code_bytes: aids.code_bytes(),
+                aids_stack_bytes: aids.stack_bytes,
                 library: names.filter(|name| name.starts_with("__")).cloned().collect(),
                 deepest: reach.deepest,
                 ..Cost::default()
@@ -128,7 +133,8 @@ fn to_json(board: &Board, costs: &BTreeMap<&str, Cost>) -> Result<serde_json::Va
         .map(|(number, cost)| {
             let sizes = json!({
                 "flash_bytes": cost.code_bytes + cost.constant_bytes, "state_bytes": cost.state_bytes,
-                "law_bytes": cost.law_bytes, "estimator_state_bytes": cost.estimator_bytes[0],
+                "law_bytes": cost.law_bytes, "estimator_monitor_code_bytes": cost.aids_code_bytes,
+                "estimator_monitor_stack_bytes": cost.aids_stack_bytes, "estimator_state_bytes": cost.estimator_bytes[0],
                 "estimator_law_bytes": cost.estimator_bytes[1], "stack_bytes": cost.stack_bytes,
                 "static_ram_bytes": cost.static_ram_bytes,
             });

@@ -1,5 +1,6 @@
-//! Stage `target-flight`: a minute of flight at 1 kHz on every board, with a law from an image and nothing in the program
-//! that computes with doubles: all outputs equal to the host's, no deadline missed; and with a tick that is made too long, the misses are counted and the watchdog bites.
+//! Stage `target-flight`: a minute of flight at 1 kHz on every board, model, estimator and gap monitor in the tick, with
+//! laws from images and nothing in the program that computes with doubles: all that they tell equal to the host's, no
+//! deadline missed; and with a tick that is made too long, the misses are counted and the watchdog bites.
 
 use super::boards::{self, Board};
 use super::{emulator, gates, image};

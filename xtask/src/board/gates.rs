@@ -1,17 +1,23 @@
-//! Stage `target-gates`: nothing that a step can reach panics, allocates, computes in double precision, recurses or
-//! calls through a pointer. Each gate is also shown to close, on a step that was spoilt on purpose.
+//! Stage `target-gates`: nothing that a step, an estimate or the gap monitor can reach panics, allocates, computes in
+//! double precision, recurses or calls through a pointer. Each gate is also shown to close, on each of these functions
+//! spoilt on purpose.
 
 use super::boards::{self, Board};
 use super::image;
 use crate::elf::{self, Image, Reach};
 use crate::stages::Note;
 use anyhow::{Context, Result, bail, ensure};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The functions that `firmware/src/bin/step.rs` exports.
-pub(crate) const ROOTS: [(&str, &str); 2] = [("f32", "step_f32"), ("fixed", "step_fixed")];
+/// The functions that `firmware/src/bin/step.rs` exports, by number system: the step, estimator with monitor.
+pub(crate) const ROOTS: [(&str, [&str; 2]); 2] =
+    [("f32", ["step_f32", "aids_f32"]), ("fixed", ["step_fixed", "aids_fixed"])];
 
-/// Features of the firmware that spoil the step, and what the gate then says.
+fn roots() -> impl Iterator<Item = &'static str> {
+    ROOTS.into_iter().flat_map(|(_, roots)| roots)
+}
+
+/// Features of the firmware that spoil each function, and what the gate then says.
 const SPOILT: [(&str, &str); 5] = [
     ("bad-panic", "panic"),
     ("bad-double", "double precision"),
@@ -23,34 +29,54 @@ const SPOILT: [(&str, &str); 5] = [
 pub(crate) fn check() -> Result<Note> {
     let boards = boards::one_for_each_target()?;
     for board in &boards {
-        gate(board, None)?;
-        for (feature, expected) in SPOILT {
-            match gate(board, Some(feature)) {
-                Err(error) if format!("{error:#}").contains(expected) => {}
-                Err(error) => return Err(error.context(format!("the gate closes on {feature} for another reason"))),
-                Ok(()) => bail!("{}: the gate let {feature} through", board.target),
-            }
+        let image = plain(board)?;
+        for root in roots() {
+            gate(&image, root).with_context(|| format!("{} {root}", board.target))?;
         }
-        println!("{}: no panic, double, allocation, recursion or indirect call; each gate closes", board.target);
+        for (feature, expected) in SPOILT {
+            closes(board, feature, expected)?;
+        }
+        println!(
+            "{}: no panic, double, allocation, recursion or indirect call from {}; each gate closes",
+            board.target,
+            roots().collect::<Vec<_>>().join(", ")
+        );
     }
-    Ok(format!("{} targets", boards.len()))
+    Ok(format!("{} targets, {} functions", boards.len(), roots().count()))
 }
 
-/// Passes if the step, spoilt by `feature` or not, does nothing forbidden.
-fn gate(board: &Board, feature: Option<&str>) -> Result<()> {
-    let path = match image::step(board, feature) {
-        Ok(path) => path,
-        Err(error) if format!("{error:#}").contains("panic-never") && feature.is_none() => {
-            bail!("{}: a step can panic:\n{}", board.target, ways_to_panic(board)?)
+/// The program as it is; where it does not link because something panics, the ways to the panic.
+fn plain(board: &Board) -> Result<PathBuf> {
+    match image::step(board, None) {
+        Err(error) if format!("{error:#}").contains("panic-never") => {
+            bail!("{}: a function of the tick can panic:\n{}", board.target, ways_to_panic(board)?)
         }
-        Err(error) => return Err(error),
+        image => image,
+    }
+}
+
+/// Fails unless the gate closes on every function, for the expected reason. A panic and an allocation already stop the
+/// linker, which tells no functions apart.
+fn closes(board: &Board, feature: &str, expected: &str) -> Result<()> {
+    let image = match image::step(board, Some(feature)) {
+        Ok(image) => image,
+        Err(error) if format!("{error:#}").contains(expected) => return Ok(()),
+        Err(error) => return Err(error.context(format!("{feature} does not build for another reason"))),
     };
-    for (_, root) in ROOTS {
-        let complaints = complaints(&path, root).with_context(|| format!("{} {root}", board.target))?;
-        if !complaints.is_empty() {
-            bail!("{} {root}:\n{}", board.target, complaints.join("\n"));
+    for root in roots() {
+        match gate(&image, root) {
+            Err(error) if format!("{error:#}").contains(expected) => {}
+            Err(error) => return Err(error.context(format!("the gate closes on {feature} for another reason"))),
+            Ok(()) => bail!("{}: the gate let {feature} through in {root}", board.target),
         }
     }
+    Ok(())
+}
+
+/// Passes if the function does nothing forbidden.
+fn gate(image: &Path, root: &str) -> Result<()> {
+    let complaints = complaints(image, root)?;
+    ensure!(complaints.is_empty(), "{}", complaints.join("\n"));
     Ok(())
 }
 
@@ -70,7 +96,7 @@ fn complaints(image: &Path, root: &str) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// Passes if a whole program, and not its step alone, holds no function that computes with doubles.
+/// Passes if a whole program, and not its tick alone, holds no function that computes with doubles.
 pub(crate) fn without_doubles(program: &Path) -> Result<()> {
     let functions = elf::functions(&Image::read(program)?)?;
     let names = functions.values().flat_map(|function| &function.names);
@@ -99,11 +125,11 @@ fn forbidden(name: &str) -> Option<&'static str> {
     (name.contains("panic") || name.contains("rust_begin_unwind")).then_some("panics")
 }
 
-/// Every way from a step to a panic, from an image that is allowed to have one.
+/// Every way from one of the functions to a panic, from an image that is allowed to have one.
 fn ways_to_panic(board: &Board) -> Result<String> {
     let functions = elf::functions(&Image::read(&image::step(board, Some("panic-allowed"))?)?)?;
     let mut ways = Vec::new();
-    for (_, root) in ROOTS {
+    for root in roots() {
         let reach = Reach::from(&functions, root)?;
         let panics = |names: &[String]| names.iter().any(|name| forbidden(name) == Some("panics"));
         ways.extend(reach.functions.into_iter().filter(|(f, _)| panics(&f.names)).map(|(_, path)| path));

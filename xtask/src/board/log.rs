@@ -21,7 +21,7 @@ pub(crate) fn check() -> Result<Note> {
     let (text, success) = fly(&board, "defmt")?;
     print!("{text}");
     ensure!(success, "the flight fails with its log by defmt:\n{text}");
-    for part in ["INFO", "0.000", "faults {}", "phi ", "deadlines missed 0,"] {
+    for part in ["INFO", "0.000", "faults {}", "phi ", "; estimate ", "{saturated", "deadlines missed 0,"] {
         ensure!(text.contains(part), "no `{part}` in the log:\n{text}");
     }
     let lines = text.lines().count();

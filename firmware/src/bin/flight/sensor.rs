@@ -1,10 +1,17 @@
 //! The receive interrupt: a row has come in, and waits in a queue for the next tick.
 //!
-//! The sensor answers on a synchronous serial port, the `PL022` (Arm DDI 0194), where the board file names one:
-//! eight words of 16 bits make a row, the port's whole FIFO, and half of them raise its receive interrupt. The sensor
-//! itself is played by the port's own loopback: the tick sends the eight words that an asked sensor would send. On a
-//! board of yours loopback is off, and the tick sends what makes the sensor answer. Boards without such a port pend
-//! an interrupt instead, and the words stay in memory.
+//! The sensors answer on a synchronous serial port, the `PL022` (Arm DDI 0194), where the board file names one: sixteen
+//! words of 16 bits make a row, twice what the port's FIFO holds, and half a FIFO raises its receive interrupt. The tick
+//! sends the first eight words, and the interrupt another for each that has come. The sensors themselves are played by
+//! the port's own loopback: what is sent is what asked sensors would send. On a board of yours loopback is off, and the
+//! words sent are those that make the sensors answer. Boards without such a port pend an interrupt instead, and the words
+//! stay in memory.
+//!
+//! | word | content |
+//! |---|---|
+//! | 0-13 | acceleration along x, y, z, vehicle rate, external torque, theta, motor torque, as the laws take them; of each the lower half first |
+//! | 14 | whether theta and the motor torque have been read |
+//! | 15 | sum of all before: a row that does not fit it is thrown away, and the tick finds none |
 
 // Registers of a peripheral are addresses.
 #![allow(unsafe_code)]
@@ -14,49 +21,51 @@ use crate::target::Axis;
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use critical_section::Mutex;
-use gimbal_firmware::{board, minute};
-use gimbal_servo::{Input, Number};
+use gimbal_firmware::minute::{self, SIGNALS, Sent};
+use gimbal_firmware::{board, onboard::Row};
+use gimbal_servo::Number;
 use heapless::spsc::Producer;
 
 /// What the interrupt owns.
 struct Sensor {
-    rows: Producer<'static, Input<Axis>>,
+    rows: Producer<'static, Row<Axis>>,
     next: u32,
-    /// What has come in of the row, in halves of its signals, and how many.
+    /// What has come in of the row, and how many words.
     words: [u16; WORDS],
     received: usize,
 }
 
 /// Of 16 bits, a row's.
-const WORDS: usize = 8;
+const WORDS: usize = 16;
+/// Words that the port holds.
+const FIFO: usize = 8;
 
 static SENSOR: Mutex<RefCell<Option<Sensor>>> = Mutex::new(RefCell::new(None));
 
-/// The sensor's next answer: acceleration along x, y and z, and the rate, as the law's signals. Written by the interrupt,
-/// sent by the tick.
-static ANSWER: [AtomicU32; 4] = [const { AtomicU32::new(0) }; 4];
+/// The sensors' next answer, two words in each. Written by the interrupt, sent by the tick and the interrupt.
+static ANSWER: [AtomicU32; WORDS / 2] = [const { AtomicU32::new(0) }; WORDS / 2];
 
 /// Hands the interrupt its end of the queue.
-pub(crate) fn hand_over(rows: Producer<'static, Input<Axis>>) {
+pub(crate) fn hand_over(rows: Producer<'static, Row<Axis>>) {
     Sensor::answer(0);
     critical_section::with(|cs| SENSOR.replace(cs, Some(Sensor { rows, next: 0, words: [0; WORDS], received: 0 })));
     port::start();
 }
 
-/// Asks the sensor for a row.
+/// Asks the sensors for a row.
 pub(crate) fn trigger() {
-    for word in answer() {
-        port::send(word);
-    }
     if board::SENSOR.is_none() {
         core_of_board::pend_receive();
+        return;
     }
+    // In one piece: the interrupt sends what follows.
+    critical_section::with(|_| (0..FIFO).for_each(|index| port::send(answer(index))));
 }
 
-/// The sensor's answer as it goes over the port: of each signal the lower half first.
-fn answer() -> [u16; WORDS] {
-    let [x, y, z, rate] = ANSWER.each_ref().map(|signal| halves(signal.load(Relaxed)));
-    [x[0], x[1], y[0], y[1], z[0], z[1], rate[0], rate[1]]
+/// A word of the sensors' answer.
+fn answer(index: usize) -> u16 {
+    let [lower, upper] = halves(ANSWER[index / 2].load(Relaxed));
+    if index.is_multiple_of(2) { lower } else { upper }
 }
 
 fn halves(bits: u32) -> [u16; 2] {
@@ -73,33 +82,50 @@ pub(crate) fn receive() {
 }
 
 impl Sensor {
-    /// Takes what has come in; the interrupt comes with half a row, and again with the other half.
+    /// Takes what has come in; the interrupt comes with half a FIFO, and again with the next half.
     fn receive(&mut self) {
-        if board::SENSOR.is_none() {
-            (self.words, self.received) = (answer(), WORDS);
-        }
         while self.received < WORDS {
-            let Some(word) = port::receive() else { return };
+            let next = if board::SENSOR.is_none() { Some(answer(self.received)) } else { port::receive() };
+            let Some(word) = next else { return };
             self.words[self.received] = word;
             self.received += 1;
+            let following = self.received + FIFO - 1;
+            if board::SENSOR.is_some() && following < WORDS {
+                port::send(answer(following));
+            }
         }
         self.received = 0;
-        let [x0, x1, y0, y1, z0, z1, rate0, rate1] = self.words;
-        let signal = |low: u16, high: u16| <Axis as Number>::from_bits(u32::from(low) | u32::from(high) << 16);
-        let row = minute::row([signal(x0, x1), signal(y0, y1), signal(z0, z1), signal(rate0, rate1)]);
         // A full queue means that the ticks have stopped; the row is lost, and the tick will find one missing.
-        if self.next < minute::STEPS && self.rows.enqueue(row).is_ok() {
+        if let Some(sent) = parse(&self.words)
+            && self.next < minute::STEPS
+            && self.rows.enqueue(minute::row(&sent)).is_ok()
+        {
             self.next += 1;
             Self::answer(self.next);
         }
     }
 
-    /// Prepares row `k` of the committed flight.
+    /// Prepares row `k` of the committed minute.
     fn answer(k: u32) {
-        for (answer, signal) in ANSWER.iter().zip(minute::signals::<Axis>(k)) {
-            answer.store(Number::to_bits(signal), Relaxed);
+        let Sent { signals, there } = minute::sent::<Axis>(k);
+        let mut sum = there;
+        for (answer, signal) in ANSWER.iter().zip(signals) {
+            let bits = Number::to_bits(signal);
+            sum = halves(bits).into_iter().fold(sum, u16::wrapping_add);
+            answer.store(bits, Relaxed);
         }
+        ANSWER[SIGNALS].store(u32::from(there) | u32::from(sum) << 16, Relaxed);
     }
+}
+
+/// A row whose sum fits.
+fn parse(words: &[u16; WORDS]) -> Option<Sent<Axis>> {
+    let [signals @ .., there, sum] = words;
+    if signals.iter().fold(*there, |sum, word| sum.wrapping_add(*word)) != *sum {
+        return None;
+    }
+    let signal = |i: usize| u32::from(signals[2 * i]) | u32::from(signals[2 * i + 1]) << 16;
+    Some(Sent { signals: core::array::from_fn(|i| <Axis as Number>::from_bits(signal(i))), there: *there })
 }
 
 /// Registers of the PL022.

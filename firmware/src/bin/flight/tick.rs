@@ -4,10 +4,11 @@
 //!
 //! 1. The timer runs at 1 kHz and, on Cortex-M, above every other interrupt: nothing delays the tick but a critical
 //!    section, and those are a few instructions long.
-//! 2. A tick takes one row from the queue, does one step and puts one output into the telemetry queue. It never waits,
-//!    and its longest path is bounded: the step has no unbounded loop, both queues are lock-free.
+//! 2. A tick takes one row from the queue, does one step of the model, of the estimator and of the gap monitor, and puts
+//!    what they tell into the telemetry queue. It never waits, and its longest path is bounded: none of the three has an
+//!    unbounded loop, both queues are lock-free.
 //! 3. Its deadline is the next tick. One that runs into it is counted as missed, and the watchdog is not fed.
-//! 4. A tick without a row repeats the last one, and counts it.
+//! 4. A tick without a row holds the last one's input, tells the estimator that gyro and motor were not read, and counts it.
 //!
 //! `cargo xtask test` (stage `target-flight`) holds all four true, on the emulated boards and with a forced overload.
 
@@ -18,7 +19,8 @@ use crate::watchdog::Watchdog;
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use critical_section::Mutex;
-use gimbal_servo::{Input, Law, Output, State};
+use gimbal_firmware::onboard::{Onboard, Row, Told};
+use gimbal_servo::estimator::Measured;
 use heapless::spsc::{Consumer, Producer};
 
 pub(crate) const TICK_HZ: u32 = 1_000;
@@ -37,6 +39,8 @@ pub(crate) struct Counts {
     pub(crate) lost: AtomicU32,
     /// Longest tick that met its deadline [counts of the timer].
     pub(crate) longest: AtomicU32,
+    /// All ticks that met theirs, together [counts of the timer].
+    pub(crate) together: AtomicU32,
     /// Latest start after the timer's zero [counts of the timer].
     pub(crate) latest: AtomicU32,
 }
@@ -47,16 +51,16 @@ pub(crate) static COUNTS: Counts = Counts {
     without_row: AtomicU32::new(0),
     lost: AtomicU32::new(0),
     longest: AtomicU32::new(0),
+    together: AtomicU32::new(0),
     latest: AtomicU32::new(0),
 };
 
 /// What the tick owns.
 pub(crate) struct Tick {
-    law: &'static Law<Axis>,
-    state: State<Axis>,
-    rows: Consumer<'static, Input<Axis>>,
-    outputs: Producer<'static, Output<Axis>>,
-    row: Option<Input<Axis>>,
+    onboard: Onboard<'static, Axis>,
+    rows: Consumer<'static, Row<Axis>>,
+    telemetry: Producer<'static, Told<Axis>>,
+    row: Option<Row<Axis>>,
     watchdog: Watchdog,
     number: u32,
 }
@@ -77,12 +81,12 @@ pub(crate) fn tick() {
 
 impl Tick {
     pub(crate) fn new(
-        law: &'static Law<Axis>,
-        rows: Consumer<'static, Input<Axis>>,
-        outputs: Producer<'static, Output<Axis>>,
+        onboard: Onboard<'static, Axis>,
+        rows: Consumer<'static, Row<Axis>>,
+        telemetry: Producer<'static, Told<Axis>>,
         watchdog: Watchdog,
     ) -> Self {
-        Self { law, state: law.start(), rows, outputs, row: None, watchdog, number: 0 }
+        Self { onboard, rows, telemetry, row: None, watchdog, number: 0 }
     }
 
     fn run(&mut self) {
@@ -90,12 +94,15 @@ impl Tick {
         let start = since_tick();
         match self.rows.dequeue() {
             Some(row) => self.row = Some(row),
-            None => add_one(&COUNTS.without_row),
+            None => {
+                self.row = self.row.map(|row| Row { measured: Measured::default(), ..row });
+                add_one(&COUNTS.without_row);
+            }
         }
         // Until the first row has come there is nothing to step with.
-        if let Some(row) = self.row {
-            let output = self.law.step(&mut self.state, row);
-            if self.outputs.enqueue(output).is_err() {
+        if let Some(row) = &self.row {
+            let told = self.onboard.step(row);
+            if self.telemetry.enqueue(told).is_err() {
                 add_one(&COUNTS.lost);
             }
         }
@@ -107,7 +114,9 @@ impl Tick {
         if next_tick_waits() {
             add_one(&COUNTS.missed);
         } else {
-            raise(&COUNTS.longest, since_tick() - start);
+            let took = since_tick() - start;
+            raise(&COUNTS.longest, took);
+            COUNTS.together.store(COUNTS.together.load(Relaxed).saturating_add(took), Relaxed);
             self.watchdog.feed();
         }
     }
