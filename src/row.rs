@@ -89,6 +89,7 @@ pub(crate) fn sums<N: Number, const L: usize>(rows: &[ScaledRow<N, L>], signals:
     // A compiler that knew how many there are would unroll them all.
     for (sum, row) in core::hint::black_box(to).iter_mut().zip(core::hint::black_box(rows)) {
         *sum = Row { coefs: row.coefs }.increment(signals);
+        keep_rolled();
     }
 }
 
@@ -106,4 +107,11 @@ fn sum_of_products<N: Number>(coefs: &[N::Coef], signals: &[N]) -> N::Wide {
     let mut products = coefs.iter().zip(signals).map(|(coef, signal)| *coef * *signal);
     let first = products.next().unwrap_or_default();
     products.fold(first, |sum, product| sum + product)
+}
+
+/// In a loop off the straight path: the compiler does not repeat its body, for the sake of the program's size. No
+/// instruction.
+#[inline(always)]
+pub(crate) fn keep_rolled() {
+    core::hint::black_box(());
 }

@@ -4,12 +4,14 @@
 //! out again: of y its integral, of `z_i` its response, of phi' the momentum `H e` and what the motor torque did with the
 //! excess, of phi the integral. theta' is taken linear over the rest.
 
+use core::hint::black_box;
+
 use super::curve::{CURVE_SHIFT, Curve};
 use super::{Side, State};
 use crate::build::plant::{LAGS, Plant};
 use crate::crossing::Arc;
 use crate::number::Number;
-use crate::row::ScaledRow;
+use crate::row::{ScaledRow, keep_rolled};
 use crate::stored::stored;
 use crate::units::Units;
 
@@ -80,7 +82,14 @@ impl<N: Number> Law<N> {
         let last = arc.end_slope;
         // Sum of the excess over the rest of the period, for a linear slope.
         let sum = ((first + first + last).times(rest).times(rest)).times(self.sixth);
-        let changes: [N; LAGS] = core::array::from_fn(|i| -self.lags[i].response(first, last - first, rest));
+        let mut changes = [N::ZERO; LAGS];
+        // One after the other, for the sake of the program's size: a compiler that knew how many there are would unroll them.
+        let lags = black_box(state.lags.as_mut_slice()).iter_mut().zip(black_box(changes.as_mut_slice()));
+        for ((lag, change), tail) in lags.zip(&self.lags) {
+            *change = -tail.response(first, last - first, rest);
+            *lag = N::confine(*lag + side.mirror(*change).widen());
+            keep_rolled();
+        }
         let [a, b, c, d, e] = changes;
         let signals = [arc.end, sum, a, b, c, d, e];
         let motor_share = self.motor_share.at(&signals);
@@ -89,9 +98,6 @@ impl<N: Number> Law<N> {
             state.gimbal_angle + self.gimbal_angle.increment(&[side.mirror(sum), side.mirror(motor_share.times(rest))]);
         state.gimbal_rate = apply(state.gimbal_rate, self.gimbal_rate.at(&signals));
         state.integrator = apply(state.integrator, -self.integrator.at(&[sum]));
-        for (lag, change) in state.lags.iter_mut().zip(changes) {
-            *lag = N::confine(*lag + side.mirror(change).widen());
-        }
     }
 }
 
