@@ -1,6 +1,6 @@
 //! Stage `target-flight`: a minute of flight at 1 kHz on every board, model, estimator and gap monitor in the tick, with
 //! laws from images and nothing in the program that computes with doubles: all that they tell equal to the host's, no
-//! deadline missed; and with a tick that is made too long, the misses are counted and the watchdog bites.
+//! deadline missed; and with a tick that is made too long, or rows left out, each is counted, and the watchdog bites.
 
 use super::boards::{self, Board};
 use super::{emulator, gates, image};
@@ -25,8 +25,11 @@ pub(crate) fn check() -> Result<Note> {
     // The gate closes on a program that builds a law itself.
     ensure!(gates::without_doubles(&image::of(&board, "digest")?).is_err(), "the gate let `digest` through");
     overload_is_counted(&board)?;
+    missing_rows_are_counted(&board)?;
     watchdog_bites(&board)?;
-    Ok(format!("a minute on {flown} boards, no doubles in the program; overload counted, watchdog bites"))
+    Ok(format!(
+        "a minute on {flown} boards, no doubles in the program; overload and missing rows counted, watchdog bites"
+    ))
 }
 
 /// Ten ticks of one period and a half: ten misses, reported, and nothing hidden by the steps that follow in time.
@@ -38,6 +41,15 @@ fn overload_is_counted(board: &Board) -> Result<()> {
         board.name,
         output.lines().find(|line| line.contains("without a row")).unwrap_or_default()
     );
+    Ok(())
+}
+
+/// Three ticks for which no row has come: counted, reported, and none of them late or left out.
+fn missing_rows_are_counted(board: &Board) -> Result<()> {
+    let (output, success) = fly(board, "no-rows")?;
+    let counts = "deadlines missed 0, ticks without a row 3, outputs lost 0";
+    ensure!(!success && output.contains(counts), "three rows left out give:\n{output}");
+    println!("{:<12} rows left out: {counts}", board.name);
     Ok(())
 }
 

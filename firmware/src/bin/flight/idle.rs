@@ -3,7 +3,7 @@
 use crate::core_of_board::{self, TIMER_HZ};
 use crate::target::Axis;
 use crate::tick::{COUNTS, Counts};
-use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use core::sync::atomic::Ordering::Relaxed;
 use gimbal_firmware::minute::Seen;
 use gimbal_firmware::onboard::Told;
 use gimbal_firmware::{board, info, minute, warning};
