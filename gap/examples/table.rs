@@ -3,7 +3,8 @@
 //! LOGS logs for each effect and excitation. The size is log-uniform from 1 to 10 times the smallest detectable one, which comes from
 //! the plant with and without the effect (`corpus/detectable.rs`); where the realistic range ends before it, its end is taken.
 //! Nominal parameters are off by up to their tolerance. Noise: pick-off 2e-6 rad rms through 16 bit over +-10 mrad, torque
-//! 1e-5 N m, acceleration 0.01 m/s2, rates 2e-4 rad/s. Two threads unless `RAYON_NUM_THREADS` says otherwise.
+//! 1e-5 N m, acceleration 0.01 m/s2, rates 2e-4 rad/s. `RAYON_NUM_THREADS` says on how many threads. With `SIZES=DIR` the sizes,
+//! which do not depend on the diagnosis, are kept in a folder for the next run; `SIZES_ONLY=1` finds them alone.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -31,31 +32,58 @@ use gimbal_servo::Config;
 use outcome::{Outcome, Truth};
 use rand::RngExt;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Smallest and largest size over the detectable one.
 const MULTIPLES: (f64, f64) = (1.0, 10.0);
 
-/// One log: what was put in, and what came out.
-fn one(bench: &Bench, excitation: Excitation, seed: u64, seconds: f64, effect: Effect) -> Outcome {
+/// One log: what was put in, and what came out; none where only sizes are asked for.
+fn one(bench: &Bench, excitation: Excitation, seed: u64, seconds: f64, effect: Effect) -> Option<Outcome> {
     let model = ModelFile::default();
     let place = Effect::all().position(|other| other == effect).unwrap_or(0) as u64;
     let rng = &mut corpus::rng(seed, 100 + place);
     let peak_nm = bench.outputs[1].iter().fold(0.0, |peak: f64, value| peak.max(value.abs()));
     let drawn = Drawn::new(effect, peak_nm, seconds, rng);
-    let smallest = bench.smallest(&drawn);
     let share: f64 = rng.random();
-    let size = smallest.map_or(drawn.largest(), |least| {
-        let most = MULTIPLES.1.min(drawn.largest() / least).max(MULTIPLES.0);
-        least * MULTIPLES.0 * (most / MULTIPLES.0).powf(share)
-    });
+    let of = || {
+        let smallest = bench.smallest(&drawn);
+        let size = smallest.map_or(drawn.largest(), |least| {
+            let most = MULTIPLES.1.min(drawn.largest() / least).max(MULTIPLES.0);
+            least * MULTIPLES.0 * (most / MULTIPLES.0).powf(share)
+        });
+        Kept { smallest, size, windows: bench.windows(effect, &drawn.values(size)) }
+    };
+    let Kept { smallest, size, windows } = kept(&format!("{seed}-{excitation:?}-{seconds}-{}", effect.name()), of);
+    if std::env::var_os("SIZES_ONLY").is_some() {
+        return None;
+    }
     let values = drawn.values(size);
-    let windows = bench.windows(effect, &values);
     let platform = without_own_drift(&bench.platform, &Config::consistent(), effect);
     let effects = [(effect.name(), values.clone())];
     let log = as_log(&corpus::simulate_rows(&bench.rows, &platform, &effects, 1.0, rng).converted());
     let diagnosis = gimbal_gap::diagnose(&log, &model);
     let report = gimbal_gap::report::json(&diagnosis, "simulated", "consistent");
-    Outcome::new(Truth { effect, excitation, seed, values, size, smallest, windows }, &diagnosis, &report)
+    Some(Outcome::new(Truth { effect, excitation, seed, values, size, smallest, windows }, &diagnosis, &report))
+}
+
+/// What does not depend on the diagnosis.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    smallest: Option<f64>,
+    size: f64,
+    windows: Vec<bool>,
+}
+
+/// From the folder `SIZES` where it has it; found and kept there else.
+fn kept(name: &str, find: impl Fn() -> Kept) -> Kept {
+    let Some(folder) = std::env::var_os("SIZES") else { return find() };
+    let path = std::path::Path::new(&folder).join(format!("{name}.json"));
+    let read = std::fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str(&text).ok());
+    read.unwrap_or_else(|| {
+        let found = find();
+        std::fs::write(&path, serde_json::to_string(&found).expect("numbers")).expect("the folder SIZES");
+        found
+    })
 }
 
 fn main() {
@@ -75,10 +103,10 @@ fn main() {
         let bench = Bench::new(rows, &nominal, &corpus::drifted(&nominal, 1.0, seed), &mut corpus::rng(seed, 5));
         let each = effects.par_iter().map(|&effect| {
             let outcome = one(&bench, excitation, seed, seconds, effect);
-            progress.step(&outcome.told());
+            progress.step(&outcome.as_ref().map_or_else(|| effect.name().to_owned(), Outcome::told));
             outcome
         });
-        outcomes.extend(each.collect::<Vec<_>>());
+        outcomes.extend(each.collect::<Vec<_>>().into_iter().flatten());
     }
     println!("{}", page::page(&outcomes, &effects, logs, seconds, first));
 }

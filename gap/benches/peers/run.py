@@ -22,13 +22,11 @@ SECONDS = 60
 CASES = [
     ("manoeuvre", 31, "none", ""),
     ("table", 32, "stribeck", "3e-4,0.03"),
-    ("manoeuvre", 33, "quadratic_drag", "5e-4"),
     ("flight", 34, "cable_spring", "2e-4"),
     ("manoeuvre", 35, "torque_ripple", "1e-4,17,0.5"),
     ("manoeuvre", 36, "mass_unbalance", "8e-6,5e-6"),
     ("flight", 37, "loop_delay", "1e-4"),
     ("manoeuvre", 38, "gyro_damping", "0.1"),
-    ("table", 39, "time_skew", "5e-4"),
 ]
 # columns of the torque balance that stand for several effects
 SAME = {"gyro": {"gyro_damping", "angular_momentum"}, "viscosity": {"viscous_friction"}}

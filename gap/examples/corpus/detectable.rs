@@ -22,6 +22,8 @@ use super::{ACCEL_NOISE_MPS2, PICKOFF_NOISE_RAD, PICKOFF_STEP_RAD, RATE_NOISE_RA
 
 /// d of the smallest size.
 const DETECTABLE: f64 = 5.0;
+/// Local error of the plant's steps: what is left of it in theta is a thousandth of the noise.
+const TOLERANCE: f64 = 1e-7;
 /// Rows that are not looked at.
 const UNSCORED: usize = 1000;
 /// Rows of one piece of the noise spectrum.
@@ -84,7 +86,7 @@ pub(crate) fn without_own_drift(platform: &Config, nominal: &Config, effect: Eff
 
 /// theta and torque as logged, without noise, and the inputs as logged; none where the platform is lost.
 fn run(rows: &[Row], platform: &Config, effect: Option<(Effect, &[f64])>) -> Option<(Outputs, Vec<Row>)> {
-    let mut plant = Plant::new(platform).ok()?.with_tolerance(1e-8);
+    let mut plant = Plant::new(platform).ok()?.with_tolerance(TOLERANCE);
     if let Some((effect, values)) = effect {
         plant = plant.with_effect(effect, values).ok()?;
     }
@@ -318,7 +320,7 @@ impl Bench {
         Some((dot(&column, &column) - taken).max(0.0).sqrt())
     }
 
-    /// The size with d = 5 to 5 %; none where the realistic range ends before it.
+    /// The size with d = 5 to 5 %, or the least that is asked for; none where the realistic range ends before it.
     pub(crate) fn smallest(&self, drawn: &Drawn) -> Option<f64> {
         // what is lost shows, and is too large
         let d = |size: f64| self.d(drawn.effect, &drawn.values(size)).unwrap_or(f64::INFINITY);
@@ -335,11 +337,14 @@ impl Bench {
             } else {
                 high = Some((size, now));
             }
+            if high.is_some_and(|(size, _)| size <= drawn.least()) {
+                return Some(drawn.least());
+            }
             size = match (low, high) {
                 (Some((size, d)), None) if size < largest => {
                     (size * (1.2 * DETECTABLE / d).clamp(1.5, 30.0)).min(largest)
                 }
-                (None, Some((size, d))) => size * (0.8 * DETECTABLE / d).clamp(1e-3, 0.7),
+                (None, Some((size, d))) => (size * (0.8 * DETECTABLE / d).clamp(1e-3, 0.7)).max(drawn.least()),
                 (Some((small, less)), Some((large, more))) if more.is_finite() && less > 0.0 => {
                     let part = ((DETECTABLE / less).ln() / (more / less).ln()).clamp(0.1, 0.9);
                     small * (large / small).powf(part)

@@ -63,6 +63,11 @@ impl Drawn {
         }
     }
 
+    /// No size below this is asked for: the plant finds every step of a quantised pick-off in time.
+    pub(crate) fn least(&self) -> f64 {
+        if self.effect.name() == "pickoff_quantisation" { self.effect.parameters()[0].low } else { 0.0 }
+    }
+
     /// Where a search for the smallest size begins.
     pub(crate) fn typical(&self) -> f64 {
         if self.effect.name() == "torque_saturation" { 0.05 } else { self.effect.parameters()[0].typical.abs() }

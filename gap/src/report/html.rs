@@ -43,6 +43,9 @@ fn signals(out: &mut String, diagnosis: &Diagnosis) {
     let (before, after) = (raw_residual(record, &shrink.nominal), raw_residual(record, &fit.prediction));
     let marks: Vec<(f64, f64)> =
         diagnosis.spans.iter().map(|span| (first_s + span.from_s, first_s + span.to_s)).collect();
+    let named = diagnosis.decision.as_ref().is_some_and(|decision| !decision.found.is_empty());
+    let fitted = if named { "with the effects found" } else { "nominal parameters fitted" };
+    let residual = if marks.is_empty() { "residual" } else { "residual, with the spans of the effects" };
     for (place, channel) in record.channels.iter().enumerate() {
         let column = channel.signal.column();
         let (name, unit) = (column.name(), column.unit());
@@ -51,14 +54,14 @@ fn signals(out: &mut String, diagnosis: &Diagnosis) {
         let lines = [
             Line { name: "measured", colour: "#888", points: thin(&channel.values) },
             Line { name: "nominal model", colour: "#c0392b", points: thin(predicted(channel.signal, &shrink.nominal)) },
-            Line { name: "with the effects found", colour: "#1f77b4", points: thin(model) },
+            Line { name: fitted, colour: "#1f77b4", points: thin(model) },
         ];
         out.push_str(&plot("measured against model", "time [s]", &lines, &[], false));
         let lines = [
             Line { name: "before", colour: "#c0392b", points: thin(&before[place]) },
             Line { name: "after", colour: "#1f77b4", points: thin(&after[place]) },
         ];
-        out.push_str(&plot("residual, with the spans of the effects", "time [s]", &lines, &marks, false));
+        out.push_str(&plot(residual, "time [s]", &lines, &marks, false));
         let spectrum = |which: usize| -> Vec<(f64, f64)> {
             let spectrum = &diagnosis.spectra[which][place];
             spectrum
@@ -196,8 +199,9 @@ fn tables(out: &mut String, diagnosis: &Diagnosis) {
     table("Bands", "<th>band</th><th>share</th>", bands.collect());
     let sizes = diagnosis.detectable.iter().map(|d| match d.size {
         Some(size) => {
-            let unit = if d.unit == "1" { "" } else { d.unit };
-            format!("<tr><td>{}</td><td>{} {size:.2e} {unit}</td></tr>", d.effect, d.parameter)
+            // a ratio has no unit: its name says of what
+            let unit = if d.unit == "1" { d.parameter } else { d.unit };
+            format!("<tr><td>{}</td><td>{size:.2e} {unit}</td></tr>", d.effect)
         }
         None => format!("<tr><td>{}</td><td>this log cannot show it</td></tr>", d.effect),
     });

@@ -52,7 +52,10 @@ pub(crate) fn chart(
             all.iter().fold((f64::MAX, f64::MIN), |(low, high), point| (low.min(of(point)), high.max(of(point))));
         if high > low { (low, high) } else { (low - 1.0, low + 1.0) }
     };
-    let ((x0, x1), (y0, y1)) = (range(&|point| map(point.0)), range(&|point| map(point.1)));
+    let ((x0, x1), (low, high)) = (range(&|point| map(point.0)), range(&|point| map(point.1)));
+    // a peak does not end at the frame
+    let margin = 0.04 * (high - low);
+    let (y0, y1) = (low - margin, high + margin);
     let (wide, tall) = (WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM);
     let x = |value: f64| LEFT + (map(value) - x0) / (x1 - x0) * wide;
     let y = |value: f64| TOP + (y1 - map(value)) / (y1 - y0) * tall;
