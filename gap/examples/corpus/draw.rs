@@ -63,9 +63,13 @@ impl Drawn {
         }
     }
 
-    /// No size below this is asked for: the plant finds every step of a quantised pick-off in time.
+    /// No size below this is asked for: pre-sliding replaces the clamp however small it is, and the plant finds every step of a
+    /// quantised pick-off in time.
     pub(crate) fn least(&self) -> f64 {
-        if self.effect.name() == "pickoff_quantisation" { self.effect.parameters()[0].low } else { 0.0 }
+        match self.effect.name() {
+            "presliding" | "pickoff_quantisation" => self.effect.parameters()[0].low,
+            _ => 0.0,
+        }
     }
 
     /// Where a search for the smallest size begins.

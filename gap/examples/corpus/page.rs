@@ -96,15 +96,14 @@ pub(crate) fn page(outcomes: &[Outcome], effects: &[Effect], logs: u64, seconds:
     let mut out = format!(
         "# Every effect under every excitation\n\n\
          `cargo run --release -p gimbal-gap --example table -- {logs} {seconds} {first} > docs/gap-table.md` prints this page.\n\n\
-         {logs} logs of {seconds} s at 1 kHz for each effect and excitation, seeds {first} to {}. Sizes are log-uniform from 1 to 10 times the\n\
+         Logs of {seconds} s at 1 kHz, {logs} for each effect and excitation, seeds from {first} on. Sizes are log-uniform from 1 to 10 times the\n\
          smallest that the log can show (d = 5: from the plant with and without the effect, over the noise, after every nominal\n\
          parameter has taken from it what it can inside its tolerance; `gap/examples/corpus/detectable.rs`). Nominal parameters are off by\n\
          up to 3 %, friction by up to 15 %. Noise: pick-off 2e-6 rad rms through 16 bit over +-10 mrad, torque 1e-5 N m, acceleration\n\
-         0.01 m/s2, rates 2e-4 rad/s. Columns of the log: those of the contract without `gimbal_angle_rad`, `relative_angle_rad`.\n\n\
+         0.01 m/s2, rates 2e-4 rad/s. Columns of the log: those of the contract without `gimbal_angle_rad` and `relative_angle_rad`.\n\n\
          ## Together\n\n\
          Shares in percent with 95 % intervals (Wilson). *Marked*: the report's `detectable` says that this log cannot show the effect,\n\
-         or only at a larger size.\n\n",
-        first + logs.saturating_sub(1)
+         or only at a larger size.\n\n"
     );
     summary(&mut out, outcomes);
     out.push_str(
