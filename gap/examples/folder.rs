@@ -23,6 +23,15 @@ fn main() {
         let diagnosis = gimbal_gap::diagnose(&log, &model);
         let mut report = gimbal_gap::report::json(&diagnosis, "log", "model");
         report["left_over"] = serde_json::json!(diagnosis.decision.as_ref().map(|d| d.left_over));
+        report["strangers"] = serde_json::json!(
+            diagnosis
+                .decision
+                .iter()
+                .flat_map(|d| &d.strangers)
+                .take(3)
+                .map(|s| format!("{} {:.0}", s.of, s.nats()))
+                .collect::<Vec<_>>()
+        );
         report["log"] = serde_json::json!(number);
         report["elapsed_s"] = serde_json::json!(start.elapsed().as_secs_f64());
         println!("{report}");

@@ -3,7 +3,7 @@
 use gimbal_log::Log;
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Fit, Problem, search, without};
+use crate::fit::{Fit, Problem, Search, null, raw_residual, search, search_from, without};
 use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Verdict, Yardstick, bounds_hit, correlations,
     curve, decide, detectable, free_running, one_step, portrait, shrink,
@@ -12,7 +12,9 @@ use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
 use crate::record::{Record, faults};
 
 /// A fit may leave this much of the noise that was expected, and no less.
-const TOO_QUIET: f64 = 0.9;
+const TOO_QUIET: f64 = 0.98;
+/// How often the noise is taken again.
+const AGAIN: usize = 2;
 
 /// A residual this many times the white noise of every sensor is no noise, however slow.
 const NO_NOISE: f64 = 25.0;
@@ -82,16 +84,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         return refused(record);
     }
     record.quieten(&crate::library::platform(model));
-    let mut problem = Problem::new(&record, model);
-    let mut search = search(&mut problem);
-    // a fit below the noise says that the noise was taken too high: what the effect did was in it
-    if let Some(best) = search.fits.first()
-        && best.square < TOO_QUIET * problem.whitener.count() as f64
-    {
-        let rest = crate::fit::raw_residual(&record, &best.prediction);
-        problem = Problem::with_noise(&record, model, Some(&rest));
-        search = crate::fit::search(&mut problem);
-    }
+    let (mut problem, mut search) = settled(&record, model);
     let mut decision = decide(&problem, &search, &model.tolerance);
     let channels = record.channels.len();
     let mut fit = match decision.chosen {
@@ -105,8 +98,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         fit = search.null;
     }
     let period_s = record.inputs.period_s;
-    let [before, after] =
-        [&shrink.nominal, &fit.prediction].map(|prediction| crate::fit::raw_residual(&record, prediction));
+    let [before, after] = [&shrink.nominal, &fit.prediction].map(|prediction| raw_residual(&record, prediction));
     let spectra = [&before, &after].map(|residual| {
         let of = |place: usize| {
             Spectrum::new(&residual[place], &record.channels[place].valid, problem.noise[place], period_s)
@@ -179,6 +171,29 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         not_looked_for,
         curve,
     }
+}
+
+/// The search, under a noise that its best fit does not stay below: one that does says that the noise was taken too
+/// high, and that what an effect did, or what the nominal parameters could not take away at once, was in it.
+fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
+    let quiet = |problem: &Problem, fit: &Fit| fit.square < TOO_QUIET * problem.whitener.count() as f64;
+    let again = |fit: &Fit| Problem::with_noise(record, model, Some(&raw_residual(record, &fit.prediction)));
+    let mut problem = Problem::new(record, model);
+    let mut nominal = null(&problem);
+    if quiet(&problem, &nominal) {
+        problem = again(&nominal);
+        nominal = null(&problem);
+    }
+    let mut found = search_from(&mut problem, nominal);
+    for _ in 0..AGAIN {
+        let best = found.fits.iter().fold(&found.null, |best, fit| if fit.square < best.square { fit } else { best });
+        if !quiet(&problem, best) {
+            break;
+        }
+        problem = again(best);
+        found = search(&mut problem);
+    }
+    (problem, found)
 }
 
 /// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.

@@ -7,9 +7,13 @@ use rayon::prelude::*;
 use super::Whitener;
 use super::draft::Draft;
 use super::normal::{products, slices};
+use super::path::Path;
+use super::pull::Pull;
 use super::rest::{Raw, rest};
+use super::ripple;
 use super::signals::{Signals, peak, residual, scale, valid};
-use super::turning::{impulse, turning, turning_noise};
+use super::slip::{Slips, Turning};
+use super::turning::{impulse, impulse_nm, remembered, turns};
 use super::whiten::Loop;
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, not_looked_for, nuisances, platform};
 use crate::record::{Record, Signal, rough};
@@ -64,6 +68,8 @@ pub struct Problem<'a> {
     pub gram: DMatrix<f64>,
     /// Noise.
     pub whitener: Whitener,
+    /// What a torque on the gimbal does.
+    pub path: Path,
     /// Rms of the noise of each channel.
     pub noise: Vec<f64>,
     /// Prior standard deviations of the columns.
@@ -124,8 +130,19 @@ impl<'a> Problem<'a> {
                 known.swap_remove(0)
             }
         };
+        let mut impulse = impulse(&base, record);
+        scale(std::slice::from_mut(&mut impulse), &scaled);
+        let turns = turns(&base, record, &nominal);
+        let period_s = record.inputs.period_s;
+        let whitener = Whitener::new(&rest, &valid, Loop { impulse: &impulse, turning: &remembered(&turns), period_s });
+        let turning = Turning { record, base: &base, begin: &begin, nominal: &nominal, turns: &turns, scaled: &scaled };
+        let slips = Slips::new(&turning, |signals| whitener.filter(signals));
+        let whitener = whitener.with_slips(slips);
         // lines of ripple stand out of it
-        let lines = crate::fit::search::ripple_cycles(record, &nominal, &target, &noise, &valid);
+        let path = Path::new(&whitener, &impulse, impulse_nm(&base, record), period_s);
+        let rel: Vec<f64> =
+            record.inputs.turned_rad.iter().zip(&nominal.gimbal_angle_rad).map(|(a, b)| a - b).collect();
+        let lines = ripple::cycles(&path, &path.drive(&whitener, &whitener.apply(&rest)), &rel, &valid, period_s);
         let (mut columns, mut sigma) = (columns, sigma);
         let ripple = library_ripple(&record.inputs, &offer, &lines);
         for candidate in ripple.into_iter().filter(|own| !not_looked_for.contains(&own.effect)) {
@@ -136,14 +153,6 @@ impl<'a> Problem<'a> {
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             candidates.push(candidate);
         }
-        let mut impulse = impulse(&base, record);
-        scale(std::slice::from_mut(&mut impulse), &scaled);
-        let (turning, share) = turning(&base, record, &nominal);
-        let period_s = record.inputs.period_s;
-        let turning_noise = turning_noise(&base, record, &nominal) * share.sqrt();
-        let rate_noise = &record.rate_noise;
-        let behind = Loop { impulse: &impulse, turning: &turning, turning_noise, rate_noise, period_s };
-        let whitener = Whitener::new(&rest, &valid, behind);
         let whitened: Vec<Vec<f64>> = raw_columns.into_par_iter().map(|column| whitener.apply(&column)).collect();
         let gram = products(&slices(&whitened), &slices(&whitened), 0..whitener.rows());
         let stop_rad = model.config.gyro.stop_angle_rad;
@@ -159,6 +168,7 @@ impl<'a> Problem<'a> {
             whitened,
             gram,
             whitener,
+            path,
             noise,
             sigma,
         }
@@ -177,6 +187,19 @@ impl<'a> Problem<'a> {
         let scaled: Vec<f64> = self.noise.iter().map(|noise| 1.0 / noise).collect();
         scale(&mut signals, &scaled);
         self.whitener.apply(&signals[0])
+    }
+
+    /// A torque on the gimbal as the whitened channels show it [N m].
+    #[must_use]
+    pub(crate) fn torque_column(&self, torque_nm: &[f64]) -> Vec<f64> {
+        self.path.column(&self.whitener, torque_nm)
+    }
+
+    /// Half the slopes and half the curvatures of the priors of the nominal parameters at their shifts.
+    #[must_use]
+    pub(crate) fn pulled(&self, precision: &[f64], shifts: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let pull = Pull::new(self, precision, shifts);
+        (pull.slope, pull.curvature)
     }
 
     /// Other columns in the place of the first.

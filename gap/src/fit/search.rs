@@ -1,7 +1,5 @@
 //! Which effects: single ones, then pairs and triples from the best, each refined before it is judged.
 
-use std::f64::consts::TAU;
-
 use rayon::prelude::*;
 
 use super::normal::{drive, slices, solve};
@@ -9,8 +7,6 @@ use super::pull::Pull;
 use super::refine::Effort;
 use super::refit::rebase;
 use super::{Fit, Problem, refine};
-use crate::record::{Record, Signal};
-use crate::simulate::Prediction;
 
 /// A set of candidates, by index.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -36,7 +32,12 @@ const PROMISE_OF_SHIFT: f64 = 3.0;
 /// Looks through the library.
 #[must_use]
 pub fn search(problem: &mut Problem) -> Search {
-    let null = refine(problem, &Set::default(), &[], None, Effort::Thorough);
+    let null = null(problem);
+    search_from(problem, null)
+}
+
+/// The same from the fit of the nominal parameters alone.
+pub(crate) fn search_from(problem: &mut Problem, null: Fit) -> Search {
     rebase(problem, &null);
     let mut fits = sets(problem, &null);
     if let Some(best) = fits.first() {
@@ -53,6 +54,11 @@ pub fn search(problem: &mut Problem) -> Search {
     without_idle(problem, &mut fits);
     let null = from_there(problem, null, &fits);
     Search { null, fits }
+}
+
+/// The nominal parameters alone.
+pub(crate) fn null(problem: &Problem) -> Fit {
+    refine(problem, &Set::default(), &[], None, Effort::Thorough)
 }
 
 /// Singles, and pairs and triples from the best of them, the best first.
@@ -252,54 +258,4 @@ fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
     let mut values = from.values.clone();
     values.push(problem.candidates[extension.index].values(&extension.amplitudes));
     refine(problem, &set, &values, Some(from), Effort::Quick)
-}
-
-/// Cycles a revolution at which the torque residual has lines: a matched filter in rel.
-pub(crate) fn ripple_cycles(
-    record: &Record,
-    nominal: &Prediction,
-    target: &[Vec<f64>],
-    noise: &[f64],
-    valid: &[bool],
-) -> Vec<f64> {
-    let place = record.channels.iter().position(|channel| channel.signal == Signal::MotorTorque);
-    let Some(place) = place else { return Vec::new() };
-    let stride = 4;
-    let rel: Vec<f64> = record.inputs.turned_rad.iter().zip(&nominal.gimbal_angle_rad).map(|(a, b)| a - b).collect();
-    let (low, high) = rel.iter().fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
-    let span = high - low;
-    if !span.is_finite() || span < 0.05 {
-        return Vec::new();
-    }
-    // the torque residual without its slow part, where theta follows
-    let torque: Vec<f64> = target[place].iter().map(|value| value * noise[place]).collect();
-    let picks: Vec<usize> = (0..rel.len()).step_by(stride).filter(|&k| valid[k]).collect();
-    let finest = TAU / span;
-    let step = 0.25 * finest;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
-    let count = ((150.0 / step) as usize).min(1500);
-    let mut lines: Vec<(f64, f64)> = (1..count)
-        .into_par_iter()
-        .map(|line| {
-            let cycles = finest.max(0.8) + line as f64 * step.max(150.0 / 1500.0 * 0.5);
-            let (mut sine, mut cosine) = (0.0, 0.0);
-            for &k in &picks {
-                let (s, c) = (cycles * rel[k]).sin_cos();
-                sine += s * torque[k];
-                cosine += c * torque[k];
-            }
-            (cycles, sine.hypot(cosine))
-        })
-        .collect();
-    lines.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut found: Vec<f64> = Vec::new();
-    for (cycles, _) in lines {
-        if found.iter().all(|other| (other - cycles).abs() > 2.0 * finest) {
-            found.push(cycles);
-        }
-        if found.len() == 2 {
-            break;
-        }
-    }
-    found
 }

@@ -1,6 +1,6 @@
-//! The loop behind the whitening: its response to a torque, and where the noise of the logged rate is torque.
+//! The loop behind the whitening: its response to a torque, and where the bearing turns around.
 
-use super::signals::{Signals, peak, predicted};
+use super::signals::{Signals, predicted};
 use crate::record::Record;
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
@@ -30,27 +30,32 @@ pub(crate) fn impulse(base: &Physics, record: &Record) -> Signals {
     record.channels.iter().map(|channel| predicted(channel.signal, &run).to_vec()).collect()
 }
 
-/// Rows at which friction turns around, with what follows; and the share of them in which the noise of the rate acts.
-pub(crate) fn turning(base: &Physics, record: &Record, nominal: &Prediction) -> (Vec<bool>, f64) {
-    let slip = base.config.bearing.slip_rate_radps;
-    let (mut wait, mut inside) = (0_usize, 0.0);
-    let rates = record.inputs.rate_radps.iter().zip(&nominal.gimbal_rate_radps);
-    let turning: Vec<bool> = rates
-        .map(|(vehicle, gimbal)| {
-            let turns = (vehicle - gimbal).abs() < slip;
-            inside += f64::from(u8::from(turns));
-            wait = if turns { AFTER_TURNING } else { wait.saturating_sub(1) };
-            wait > 0
-        })
-        .collect();
-    let all = turning.iter().filter(|turning| **turning).count();
-    (turning, inside / all.max(1) as f64)
+/// The torque of that impulse, over one row [N m].
+pub(crate) fn impulse_nm(base: &Physics, record: &Record) -> f64 {
+    base.config.servo.gimbal_inertia_kg_m2 * IMPULSE_RADPS / record.inputs.period_s
 }
 
-/// Torque that the noise of the logged rate makes on the slope of the friction law, over that of the impulse.
-pub(crate) fn turning_noise(base: &Physics, record: &Record, nominal: &Prediction) -> f64 {
-    let rate = record.rate_noise.rms_radps;
-    let level = peak(&nominal.friction_nm);
-    let impulse_nm = base.config.servo.gimbal_inertia_kg_m2 * IMPULSE_RADPS / record.inputs.period_s;
-    rate * level / base.config.bearing.slip_rate_radps / impulse_nm
+/// Rows at which the bearing turns around: within the slip rate, or past it from one row to the next.
+pub(crate) fn turns(base: &Physics, record: &Record, nominal: &Prediction) -> Vec<bool> {
+    let slip_radps = base.config.bearing.slip_rate_radps;
+    let rates = record.inputs.rate_radps.iter().zip(&nominal.gimbal_rate_radps);
+    let slips: Vec<f64> = rates.map(|(vehicle, gimbal)| vehicle - gimbal).collect();
+    let mut turns = vec![false; slips.len()];
+    for k in 1..slips.len() {
+        if slips[k - 1].min(slips[k]) < slip_radps && slips[k - 1].max(slips[k]) > -slip_radps {
+            turns[k - 1] = true;
+            turns[k] = true;
+        }
+    }
+    turns
+}
+
+/// The same with the rows for which the loop remembers.
+pub(crate) fn remembered(turns: &[bool]) -> Vec<bool> {
+    let mut wait = 0_usize;
+    let mut remembered = |&turns: &bool| {
+        wait = if turns { AFTER_TURNING } else { wait.saturating_sub(1) };
+        wait > 0
+    };
+    turns.iter().map(&mut remembered).collect()
 }

@@ -5,6 +5,7 @@ use gimbal_plant::Effect;
 
 use super::comb;
 use super::left_over::left_over;
+use super::strange::{Stranger, strangers};
 use crate::fit::{Fit, Problem, Search};
 use crate::record::Signal;
 
@@ -19,8 +20,11 @@ const BEYOND: f64 = 1.15;
 const SCALE: f64 = 2.0;
 const SCALE_SHARE: f64 = 1e-5;
 /// Standard deviations that what is left may stand out by, and the spread of that limit.
-const LEFT_OVER: f64 = 14.0;
+const LEFT_OVER: f64 = 13.0;
 const LEFT_OVER_SCALE: f64 = 2.0;
+/// What torques of no effect may take of it beyond chance, and the spread of that limit [nats].
+const STRANGE: f64 = 24.0;
+const STRANGE_SCALE: f64 = 2.5;
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
 /// Least share of the gap that an effect takes away.
@@ -94,6 +98,8 @@ pub struct Decision {
     pub chosen: Option<usize>,
     /// Power left over before and after, over white noise.
     pub left_over: [f64; 2],
+    /// What is left, tried on torques of no effect, the likeliest first.
+    pub strangers: Vec<Stranger>,
     /// Remarks.
     pub notes: Vec<String>,
 }
@@ -147,7 +153,12 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let chosen = order.first().copied().filter(|&index| weights[index] > null_weight / sum);
     let before = left_over(problem, &search.null.residual);
     let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index].residual));
-    let unknown = unknown(before, after, chosen.is_some());
+    let fit = chosen.map_or(&search.null, |index| &search.fits[index]);
+    let strangers = strangers(problem, fit);
+    let strange = strangers.first().map_or(0.0, Stranger::nats);
+    let taken = 0.5 * (search.null.square + search.null.prior - fit.square - fit.prior);
+    let unknown = unknown(after, after / before.max(after).max(1e-9), LEFT_OVER, LEFT_OVER_SCALE, chosen.is_some())
+        .max(unknown(strange, strange / (strange + taken).max(1e-9), STRANGE, STRANGE_SCALE, chosen.is_some()));
     let share = 1.0 - unknown;
     let set_of = |index: usize| SetProbability {
         effects: names(problem, &search.fits[index]),
@@ -164,6 +175,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         unknown_probability: unknown,
         chosen,
         left_over: [before, after],
+        strangers,
         notes: Vec::new(),
     };
     if let Some(index) = chosen {
@@ -196,7 +208,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
             decision.found.clear();
             decision.chosen = None;
             Verdict::Unexplained
-        } else if after > LEFT_OVER + LEFT_OVER_SCALE {
+        } else if after > LEFT_OVER + LEFT_OVER_SCALE || strange > STRANGE + STRANGE_SCALE {
             Verdict::PartlyExplained
         } else if decision.alternatives.is_empty() {
             Verdict::Explained
@@ -209,7 +221,13 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     } else if unknown > 0.5 {
         decision.verdict = Verdict::Unexplained;
     }
-    let fit = chosen.map_or(&search.null, |index| &search.fits[index]);
+    if let Some(stranger) = decision.strangers.first().filter(|stranger| stranger.nats() > STRANGE) {
+        decision.notes.push(format!(
+            "what is left goes with {}: {:.0} nats beyond chance",
+            stranger.of,
+            stranger.nats()
+        ));
+    }
     direct(problem, fit, tolerance, &mut decision);
     decision
 }
@@ -246,11 +264,11 @@ fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, values: &[f64]
     values.iter().zip(errors).any(|(value, error)| value.abs() - error > BEYOND * tolerance.of(effect) * scale)
 }
 
-/// How probable it is that no effect of the library is it, from what stands out before and after.
-fn unknown(before: f64, after: f64, found: bool) -> f64 {
-    let stands_out = 1.0 / (1.0 + (-(after - LEFT_OVER) / LEFT_OVER_SCALE).exp());
-    // a large effect in another formulation leaves something too
-    let share = if found { after / before.max(after).max(1e-9) } else { 1.0 };
+/// How probable it is that no effect of the library is it: from how far what is left stands out beyond a limit, and
+/// from its share of the gap, as a large effect in another formulation leaves something too.
+fn unknown(stands_out: f64, share: f64, limit: f64, scale: f64, found: bool) -> f64 {
+    let stands_out = 1.0 / (1.0 + (-(stands_out - limit) / scale).exp());
+    let share = if found { share } else { 1.0 };
     (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES)).clamp(0.002, 0.98)
 }
 

@@ -10,6 +10,8 @@ mod experiment;
 mod left_over;
 mod portrait;
 mod shrink;
+mod strange;
+mod torques;
 
 pub(crate) use closed_loop::in_step;
 pub use closed_loop::{Yardstick, free_running, one_step};
@@ -20,3 +22,4 @@ pub use detectable::{Detectable, detectable};
 pub use experiment::experiment;
 pub use portrait::{Portrait, portrait};
 pub use shrink::{Shrink, ShrinkSignal, shrink};
+pub use strange::Stranger;

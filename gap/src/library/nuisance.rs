@@ -12,7 +12,7 @@ const BEYOND: f64 = 0.12;
 /// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of 1 % would not.
 const STEP: f64 = 0.02;
 /// Time constants of the electronics are mostly closer to what they should be than gains and torques are.
-const CLOSER: f64 = 0.4;
+const CLOSER: f64 = 1.0;
 /// Alignment of the accelerometers with the platform's axes [rad].
 const ALIGNMENT_RAD: f64 = 1e-3;
 

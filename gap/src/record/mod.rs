@@ -25,6 +25,9 @@ const LEAST_ACCEL_MPS2: f64 = 0.1;
 const NEAR_STOP: [f64; 2] = [0.95, 1.05];
 /// Share of its largest excursion within which the pick-off counts as on the stop.
 const PLATEAU_SHARE: f64 = 4e-3;
+/// How far the rate before it would have carried the float until its middle, over that share: less than five for the
+/// smooth peak of any parabola.
+const ONWARD: f64 = 7.0;
 
 /// A log on its grid.
 #[derive(Debug, Clone)]
@@ -164,8 +167,9 @@ impl Record {
                 continue;
             }
             // it comes in with a rate, and stands still at once
-            let before = start.checked_sub(least).map_or(0.0, |before| theta.values[before].abs());
-            if k - start > least && start >= least && before < peak * (1.0 - 10.0 * PLATEAU_SHARE) {
+            let came = start.checked_sub(least).map_or(0.0, |before| peak - theta.values[before].abs());
+            let onward = came * 0.5 * (k - start) as f64 / least as f64;
+            if k - start > least && came > 10.0 * PLATEAU_SHARE * peak && onward > ONWARD * PLATEAU_SHARE * peak {
                 level.extend(theta.values[start..k].iter().map(|value| value.abs()));
                 on_stop[start..k].fill(true);
             }

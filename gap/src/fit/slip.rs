@@ -1,0 +1,204 @@
+//! Noise of the logged rate where friction turns around: there it is torque, and no filter of frequencies whitens it.
+//!
+//! A block of rows in which the bearing turns around, its mean rate off by e of standard deviation s, adds `a e / s` to
+//! the whitened channels. Their covariance is then
+//!
+//! ```text
+//! C = I + sum a a^T          x <- x - k a' (a' . x)          k = (1 - 1 / sqrt(1 + |a'|^2)) / |a'|^2
+//! ```
+//!
+//! one block after the other, a' = a after the blocks before it: what comes out is white (Potter's square root).
+//! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant.
+
+use super::signals::{Signals, difference, scale};
+use crate::record::{RateNoise, Record};
+use crate::simulate::{Begin, Inputs, Physics, Prediction, predict};
+
+/// Most blocks.
+const MOST: usize = 800;
+/// Rows before and after the beginning of a block in which it shows.
+const BEFORE: usize = 200;
+const AFTER: usize = 1000;
+/// Rate by which a block is moved, over the slip rate.
+const STEP: f64 = 0.02;
+/// A block that adds less than this to the variance of the noise is none.
+const LEAST: f64 = 1e-3;
+/// Share of the rows in which the bearing may turn around: beyond it that is how this log is, and its noise shows it.
+const NOT_NOW_AND_THEN: f64 = 0.6;
+
+/// Rows of a block.
+type Block = std::ops::Range<usize>;
+
+/// What whitens the blocks.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Slips(Vec<Pulse>);
+
+#[derive(Debug, Clone)]
+struct Pulse {
+    /// First sample, of all channels row after row.
+    first: usize,
+    /// a'.
+    values: Vec<f64>,
+    /// k.
+    share: f64,
+}
+
+/// What blocks are made from.
+pub(crate) struct Turning<'a> {
+    pub(crate) record: &'a Record,
+    pub(crate) base: &'a Physics,
+    pub(crate) begin: &'a Begin,
+    pub(crate) nominal: &'a Prediction,
+    /// Rows at which the bearing turns around.
+    pub(crate) turns: &'a [bool],
+    /// Over each channel's noise.
+    pub(crate) scaled: &'a [f64],
+}
+
+impl Slips {
+    /// Whitens samples of all channels, row after row.
+    pub(crate) fn apply(&self, whitened: &mut [f64]) {
+        self.0.iter().for_each(|pulse| pulse.apply(whitened));
+    }
+
+    /// From the blocks as each shows after the filter of frequencies.
+    pub(crate) fn new(turning: &Turning, filter: impl Fn(&Signals) -> Vec<f64>) -> Self {
+        let blocks = turning.blocks();
+        let mut slips = Self::default();
+        if blocks.is_empty() {
+            return slips;
+        }
+        let shown = turning.shown(&blocks, filter);
+        for (block, (first, mut values)) in blocks.into_iter().zip(shown) {
+            let sigma = turning.record.rate_noise.of_mean(block.len());
+            for value in &mut values {
+                *value *= sigma;
+            }
+            // what the blocks before it leave
+            for pulse in &slips.0 {
+                pulse.apply_to(first, &mut values);
+            }
+            let square: f64 = values.iter().map(|value| value * value).sum();
+            if square > LEAST {
+                slips.0.push(Pulse { first, values, share: (1.0 - 1.0 / (1.0 + square).sqrt()) / square });
+            }
+        }
+        slips
+    }
+}
+
+impl Pulse {
+    fn apply(&self, whitened: &mut [f64]) {
+        self.apply_to(0, whitened);
+    }
+
+    /// To samples that begin at `first`.
+    fn apply_to(&self, first: usize, samples: &mut [f64]) {
+        let (from, to) = (self.first.max(first), (self.first + self.values.len()).min(first + samples.len()));
+        if from >= to {
+            return;
+        }
+        let own = &self.values[from - self.first..to - self.first];
+        let samples = &mut samples[from - first..to - first];
+        let along: f64 = own.iter().zip(&*samples).map(|(own, sample)| own * sample).sum();
+        samples.iter_mut().zip(own).for_each(|(sample, own)| *sample -= self.share * along * own);
+    }
+}
+
+impl Turning<'_> {
+    fn blocks(&self) -> Vec<Block> {
+        let rows = self.turns;
+        let many = rows.iter().filter(|turns| **turns).count() as f64 > NOT_NOW_AND_THEN * rows.len() as f64;
+        if many || self.record.rate_noise.rms_radps < 1e-9 {
+            return Vec::new();
+        }
+        let mut longest = self.record.rate_noise.rows_alike();
+        loop {
+            let blocks = divided(rows, longest);
+            if blocks.len() <= MOST || longest > AFTER / 4 {
+                return blocks;
+            }
+            longest *= 2;
+        }
+    }
+
+    /// Each block's samples after a change of its rate by 1 rad/s, and where they begin; blocks that are far from each other share a
+    /// prediction.
+    fn shown(&self, blocks: &[Block], filter: impl Fn(&Signals) -> Vec<f64>) -> Vec<(usize, Vec<f64>)> {
+        let channels = self.record.channels.len();
+        let step = STEP * self.base.config.bearing.slip_rate_radps;
+        let mut shown = vec![(0, Vec::new()); blocks.len()];
+        let mut left: Vec<usize> = (0..blocks.len()).collect();
+        while !left.is_empty() {
+            let mut next_free = 0;
+            let (now, later): (Vec<usize>, Vec<usize>) = left.into_iter().partition(|&index| {
+                let free = blocks[index].start >= next_free;
+                if free {
+                    next_free = blocks[index].end + BEFORE + AFTER;
+                }
+                free
+            });
+            let mut inputs = self.record.inputs.clone();
+            for &index in &now {
+                blocks[index].clone().for_each(|k| inputs.rate_radps[k] += step);
+            }
+            let whitened = filter(&self.moved(&inputs, step));
+            for index in now {
+                let first = channels * blocks[index].start.saturating_sub(BEFORE);
+                let last = (channels * (blocks[index].end + AFTER)).min(whitened.len());
+                shown[index] = (first, whitened[first..last].to_vec());
+            }
+            left = later;
+        }
+        shown
+    }
+
+    fn moved(&self, inputs: &Inputs, step: f64) -> Signals {
+        let moved = predict(self.base, inputs, self.begin, usize::MAX);
+        let mut moved = vec![difference(self.record, &moved, self.nominal, step)];
+        scale(&mut moved, self.scaled);
+        moved.swap_remove(0)
+    }
+}
+
+/// Runs of rows, in pieces of at most so many.
+fn divided(rows: &[bool], longest: usize) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut start = None;
+    for k in 0..=rows.len() {
+        let turns = rows.get(k).copied().unwrap_or(false);
+        match start {
+            None if turns => start = Some(k),
+            Some(first) if !turns || k - first == longest => {
+                blocks.push(first..k);
+                start = turns.then_some(k);
+            }
+            _ => {}
+        }
+    }
+    blocks
+}
+
+impl RateNoise {
+    /// Standard deviation of the mean of so many rows of the rate that drives the predictions [rad/s].
+    ///
+    /// ```text
+    /// s^2 = rms^2 mean over f of W(f) (sin(pi f n) / (n sin(pi f)))^2
+    /// ```
+    pub(crate) fn of_mean(&self, rows: usize) -> f64 {
+        let (lines, n) = (4 * rows.max(64), rows as f64);
+        let of = |line: usize| {
+            let share = (line as f64 + 0.5) / lines as f64;
+            let angle = 0.5 * std::f64::consts::PI * share;
+            self.pass(share) * ((n * angle).sin() / (n * angle.sin())).powi(2)
+        };
+        self.rms_radps * ((0..lines).map(of).sum::<f64>() / lines as f64).sqrt()
+    }
+
+    /// Rows in which its error hardly changes.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    fn rows_alike(&self) -> usize {
+        let mean = self.pass.iter().sum::<f64>() / self.pass.len() as f64;
+        (0.5 / mean.max(1e-3)).round().max(1.0) as usize
+    }
+}

@@ -1,0 +1,179 @@
+//! Torques that an effect might be, in groups by what they are functions of.
+
+use crate::fit::{Fit, Problem};
+
+/// Rms of each torque [N m].
+const UNIT_NM: f64 = 1e-4;
+/// Ways in which presliding or a cable yields [rad].
+const YIELDS_RAD: [f64; 5] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
+/// Times for which an angle is remembered [s].
+const REMEMBERED_S: [f64; 4] = [0.3, 1.0, 4.0, 15.0];
+/// Time constant of a motor's heat [s].
+const HEAT_S: f64 = 5.0;
+/// Torque over its rms within which its sign is no step.
+const SOFT: f64 = 0.02;
+
+type Series = Vec<f64>;
+type Group = (&'static str, Vec<Series>);
+
+/// Every group at a fit.
+pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
+    let motion = Motion::new(problem, fit);
+    let mut groups = motion.of_angle_and_time();
+    groups.extend(motion.of_slip());
+    groups.extend(motion.of_motor());
+    groups.extend(motion.of_specific_force());
+    for torque in groups.iter_mut().flat_map(|(_, group)| group) {
+        *torque = scaled(torque).iter().map(|value| UNIT_NM * value).collect();
+    }
+    groups
+}
+
+/// What the platform does.
+struct Motion<'a> {
+    period_s: f64,
+    /// rel [rad].
+    rel: Series,
+    /// The same from -1 to 1, and the time.
+    angle: Series,
+    time: Series,
+    /// Slip rate over its rms, and its sign.
+    slip: Series,
+    sign: Series,
+    /// Motor torque as it is and over its rms.
+    torque_nm: &'a [f64],
+    torque: Series,
+    load: Series,
+    accel: [Series; 3],
+    cross: Option<Series>,
+}
+
+impl<'a> Motion<'a> {
+    fn new(problem: &Problem, fit: &'a Fit) -> Self {
+        let inputs = &problem.record.inputs;
+        let less = |a: &[f64], b: &[f64]| -> Series { a.iter().zip(b).map(|(a, b)| a - b).collect() };
+        let rel = less(&inputs.turned_rad, &fit.prediction.gimbal_angle_rad);
+        let slip = less(&inputs.rate_radps, &fit.prediction.gimbal_rate_radps);
+        let soft = problem.base.config.bearing.slip_rate_radps;
+        let rows: Series = (0..inputs.len()).map(|k| k as f64).collect();
+        Self {
+            period_s: inputs.period_s,
+            angle: unit(&rel),
+            rel,
+            time: unit(&rows),
+            sign: slip.iter().map(|slip| (slip / soft).clamp(-1.0, 1.0)).collect(),
+            slip: scaled(&slip),
+            torque_nm: &fit.prediction.motor_torque_nm,
+            torque: scaled(&fit.prediction.motor_torque_nm),
+            load: scaled(&inputs.load_nm),
+            accel: inputs.accel_mps2.each_ref().map(|axis| scaled(axis)),
+            cross: (!inputs.cross_radps.is_empty()).then(|| scaled(&inputs.cross_radps)),
+        }
+    }
+
+    fn of_angle_and_time(&self) -> Vec<Group> {
+        vec![
+            ("gimbal angle", series(&self.angle, 8)),
+            ("gimbal angle and direction", each(&self.sign, &series(&self.angle, 5))),
+            ("gimbal angle that was", REMEMBERED_S.map(|tau_s| self.followed(&self.rel, tau_s)).to_vec()),
+            ("way since it turned around", YIELDS_RAD.map(|span_rad| self.yielded(span_rad)).to_vec()),
+            ("time", series(&self.time, 12)),
+            ("time and direction", each(&self.sign, &series(&self.time, 8))),
+        ]
+    }
+
+    fn of_slip(&self) -> Vec<Group> {
+        let mut rates: Vec<Series> = [0.33, 0.66, 1.0, 2.0].map(|exponent| odd(&self.slip, exponent)).to_vec();
+        rates.extend([0.5, 1.0, 2.0].map(|exponent| even(&self.slip, exponent)));
+        rates.push(self.sign.clone());
+        let loads = [0.5, 1.0, 2.0].map(|exponent| odd(&self.load, exponent)).to_vec();
+        vec![("slip rate", rates), ("load", each(&self.sign, &loads))]
+    }
+
+    fn of_motor(&self) -> Vec<Group> {
+        let torque = &self.torque;
+        let soft = torque.iter().map(|value| (value / SOFT).clamp(-1.0, 1.0)).collect();
+        let shapes = vec![even(torque, 1.0), even(torque, 2.0), odd(torque, 2.0), odd(torque, 3.0), soft];
+        let heat = self.followed(&product(self.torque_nm, self.torque_nm), HEAT_S);
+        vec![
+            ("motor torque", shapes),
+            ("motor torque and time", each(torque, &series(&self.time, 6))),
+            ("motor torque and gimbal angle", each(torque, &series(&self.angle, 4))),
+            ("heat of the motor", vec![product(&heat, torque), product(&heat, &self.sign), heat]),
+        ]
+    }
+
+    fn of_specific_force(&self) -> Vec<Group> {
+        let [x, y, z] = &self.accel;
+        let mut forces = vec![x.clone(), y.clone(), z.clone()];
+        forces.extend([(x, y), (y, z), (z, x), (x, x), (y, y), (z, z)].map(|(a, b)| product(a, b)));
+        let mut groups = vec![("specific force", forces)];
+        if let Some(cross) = &self.cross {
+            groups.push(("cross rate", vec![cross.clone(), product(cross, cross), product(cross, &self.slip)]));
+        }
+        groups
+    }
+
+    /// A first-order lag.
+    fn followed(&self, of: &[f64], tau_s: f64) -> Series {
+        let share = (self.period_s / tau_s).min(1.0);
+        let mut state = of.first().copied().unwrap_or(0.0);
+        of.iter()
+            .map(|x| {
+                state += (x - state) * share;
+                state
+            })
+            .collect()
+    }
+
+    /// A spring that yields, over its limit.
+    fn yielded(&self, span_rad: f64) -> Series {
+        let (mut state, mut last) = (0.0, self.rel.first().copied().unwrap_or(0.0));
+        self.rel
+            .iter()
+            .map(|rel| {
+                state = f64::clamp(state + (rel - last) / span_rad, -1.0, 1.0);
+                last = *rel;
+                state
+            })
+            .collect()
+    }
+}
+
+/// Chebyshev's polynomials from the first on, of what lies between -1 and 1.
+fn series(of: &[f64], orders: u32) -> Vec<Series> {
+    (1..=orders)
+        .map(|order| of.iter().map(|x| (f64::from(order) * x.clamp(-1.0, 1.0).acos()).cos()).collect())
+        .collect()
+}
+
+fn each(factor: &[f64], group: &[Series]) -> Vec<Series> {
+    group.iter().map(|own| product(factor, own)).collect()
+}
+
+fn product(a: &[f64], b: &[f64]) -> Series {
+    a.iter().zip(b).map(|(a, b)| a * b).collect()
+}
+
+fn odd(of: &[f64], exponent: f64) -> Series {
+    of.iter().map(|x| x.abs().powf(exponent) * x.signum()).collect()
+}
+
+fn even(of: &[f64], exponent: f64) -> Series {
+    of.iter().map(|x| x.abs().powf(exponent)).collect()
+}
+
+/// From -1 to 1.
+fn unit(values: &[f64]) -> Series {
+    let (low, high) =
+        values.iter().fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
+    let half = (0.5 * (high - low)).max(1e-12);
+    values.iter().map(|value| (value - low) / half - 1.0).collect()
+}
+
+/// Of unit rms.
+fn scaled(values: &[f64]) -> Series {
+    let square: f64 = values.iter().map(|value| value * value).sum();
+    let by = 1.0 / (square / values.len().max(1) as f64).sqrt().max(1e-12);
+    values.iter().map(|value| value * by).collect()
+}
