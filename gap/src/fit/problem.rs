@@ -13,7 +13,7 @@ use super::rest::{Raw, rest};
 use super::ripple;
 use super::signals::{Signals, peak, residual, scale, valid};
 use super::slip::{Slips, Turning};
-use super::turning::{impulse, impulse_nm, remembered, turns};
+use super::turning::{at_once, impulse, impulse_nm, remembered, turning_noise, turns};
 use super::whiten::Loop;
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, not_looked_for, nuisances, platform};
 use crate::record::{Record, Signal, rough};
@@ -68,8 +68,10 @@ pub struct Problem<'a> {
     pub gram: DMatrix<f64>,
     /// Noise.
     pub whitener: Whitener,
-    /// What a torque on the gimbal does.
+    /// What a torque on the gimbal does, as long as the bearing turns around at once.
     pub path: Path,
+    /// Whether it does.
+    pub turns_at_once: bool,
     /// Rms of the noise of each channel.
     pub noise: Vec<f64>,
     /// Prior standard deviations of the columns.
@@ -133,11 +135,17 @@ impl<'a> Problem<'a> {
         let mut impulse = impulse(&base, record);
         scale(std::slice::from_mut(&mut impulse), &scaled);
         let turns = turns(&base, record, &nominal);
-        let period_s = record.inputs.period_s;
-        let whitener = Whitener::new(&rest, &valid, Loop { impulse: &impulse, turning: &remembered(&turns), period_s });
-        let turning = Turning { record, base: &base, begin: &begin, nominal: &nominal, turns: &turns, scaled: &scaled };
-        let slips = Slips::new(&turning, |signals| whitener.filter(signals));
-        let whitener = whitener.with_slips(slips);
+        let turns_at_once = at_once(&turns);
+        let turning_noise = if turns_at_once { 0.0 } else { turning_noise(&base, record, &nominal, &turns) };
+        let (period_s, rate_noise) = (record.inputs.period_s, &record.rate_noise);
+        let behind = Loop { impulse: &impulse, turning: &remembered(&turns), turning_noise, rate_noise, period_s };
+        let mut whitener = Whitener::new(&rest, &valid, behind);
+        if turns_at_once {
+            let turning =
+                Turning { record, base: &base, begin: &begin, nominal: &nominal, turns: &turns, scaled: &scaled };
+            let slips = Slips::new(&turning, |signals| whitener.filter(signals));
+            whitener = whitener.with_slips(slips);
+        }
         // lines of ripple stand out of it
         let path = Path::new(&whitener, &impulse, impulse_nm(&base, record), period_s);
         let rel: Vec<f64> =
@@ -169,6 +177,7 @@ impl<'a> Problem<'a> {
             gram,
             whitener,
             path,
+            turns_at_once,
             noise,
             sigma,
         }

@@ -23,8 +23,6 @@ const AFTER: usize = 1000;
 const STEP: f64 = 0.02;
 /// A block that adds less than this to the variance of the noise is none.
 const LEAST: f64 = 1e-3;
-/// Share of the rows in which the bearing may turn around: beyond it that is how this log is, and its noise shows it.
-const NOT_NOW_AND_THEN: f64 = 0.6;
 
 /// Rows of a block.
 type Block = std::ops::Range<usize>;
@@ -107,14 +105,12 @@ impl Pulse {
 
 impl Turning<'_> {
     fn blocks(&self) -> Vec<Block> {
-        let rows = self.turns;
-        let many = rows.iter().filter(|turns| **turns).count() as f64 > NOT_NOW_AND_THEN * rows.len() as f64;
-        if many || self.record.rate_noise.rms_radps < 1e-9 {
+        if self.record.rate_noise.rms_radps < 1e-9 {
             return Vec::new();
         }
         let mut longest = self.record.rate_noise.rows_alike();
         loop {
-            let blocks = divided(rows, longest);
+            let blocks = divided(self.turns, longest);
             if blocks.len() <= MOST || longest > AFTER / 4 {
                 return blocks;
             }

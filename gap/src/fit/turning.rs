@@ -1,11 +1,15 @@
 //! The loop behind the whitening: its response to a torque, and where the bearing turns around.
 
-use super::signals::{Signals, predicted};
+use super::signals::{Signals, peak, predicted};
 use crate::record::Record;
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
 /// Rate after the impulse [rad/s].
 const IMPULSE_RADPS: f64 = 1e-3;
+/// Share of the rows up to which the bearing turns around seldom.
+const SELDOM: f64 = 0.25;
+/// Rows of one turn, in the mean, from which on it is slow.
+const SLOWLY: usize = 16;
 /// Rows for which the loop remembers a disturbance.
 const AFTER_TURNING: usize = 400;
 
@@ -50,6 +54,14 @@ pub(crate) fn turns(base: &Physics, record: &Record, nominal: &Prediction) -> Ve
     turns
 }
 
+/// Whether it does so at once and seldom. Else the way in which friction turns around shows beside the noise of the
+/// rate, and the loop is not linear in between.
+pub(crate) fn at_once(turns: &[bool]) -> bool {
+    let rows = turns.iter().filter(|turns| **turns).count();
+    let runs = turns.windows(2).filter(|pair| pair[1] && !pair[0]).count();
+    rows as f64 <= SELDOM * turns.len() as f64 && rows <= SLOWLY * runs.max(1)
+}
+
 /// The same with the rows for which the loop remembers.
 pub(crate) fn remembered(turns: &[bool]) -> Vec<bool> {
     let mut wait = 0_usize;
@@ -58,4 +70,14 @@ pub(crate) fn remembered(turns: &[bool]) -> Vec<bool> {
         wait > 0
     };
     turns.iter().map(&mut remembered).collect()
+}
+
+/// Torque that the noise of the logged rate makes on the slope of the friction law, over that of the impulse, where the
+/// bearing turns around and for as long as the loop remembers.
+pub(crate) fn turning_noise(base: &Physics, record: &Record, nominal: &Prediction, turns: &[bool]) -> f64 {
+    let rows = |of: &[bool]| of.iter().filter(|turns| **turns).count() as f64;
+    let share = rows(turns) / rows(&remembered(turns)).max(1.0);
+    let level_nm = peak(&nominal.friction_nm) * share.sqrt();
+    let rate_radps = record.rate_noise.rms_radps;
+    rate_radps * level_nm / base.config.bearing.slip_rate_radps / impulse_nm(base, record)
 }

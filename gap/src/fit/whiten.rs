@@ -6,8 +6,10 @@
 //!
 //! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
 //! to the channel), b noise of low frequency with its corner. Only what has one of these shapes is noise. Fitted by
-//! Whittle's likelihood to medians over segments, so that what happens now and then is no noise either; where there are
-//! enough of them, rows at which the bearing turns around are left out. [`Slips`] whitens the noise that is there.
+//! Whittle's likelihood to medians over segments, so that what happens now and then is no noise either. Where the
+//! bearing turns around at once, [`Slips`] whitens the noise of the logged rate; where it does so slowly, that noise
+//! comes through the slope of the friction law: `P + s^2 W(f) |G(f)|^2`, s the torque that the rate's noise makes, W
+//! Wiener's filter: of noise and motion it leaves that much to be off.
 
 use std::fmt;
 use std::sync::Arc;
@@ -16,7 +18,7 @@ use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
 use super::slip::Slips;
-use crate::record::between;
+use crate::record::{RateNoise, between};
 
 /// Rows of a segment.
 const SEGMENT: usize = 4096;
@@ -50,6 +52,9 @@ pub struct Whitener {
     pub valid: Vec<bool>,
     /// `1 / sqrt(P)` at the lines of the transform.
     gains: Vec<Vec<f64>>,
+    /// The same while the bearing turns around slowly.
+    turning_gains: Vec<Vec<f64>>,
+    turning: Vec<bool>,
     slips: Slips,
     plans: Plans,
 }
@@ -75,6 +80,10 @@ pub struct Loop<'a> {
     pub impulse: &'a [Vec<f64>],
     /// Rows at which the bearing may turn around, and those just after.
     pub turning: &'a [bool],
+    /// s of the rate's noise as logged, in units of the impulse; zero where it is whitened turn by turn.
+    pub turning_noise: f64,
+    /// What is left of that noise.
+    pub rate_noise: &'a RateNoise,
     /// Time between two rows [s].
     pub period_s: f64,
 }
@@ -87,21 +96,38 @@ impl Whitener {
         let plans = Plans::new(rows + SEGMENT.min(rows));
         let step_hz = 1.0 / (plans.length as f64 * behind.period_s);
         let quiet: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && !turning).collect();
+        let turns: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && *turning).collect();
         let mut noise = Vec::new();
-        let mut gains = Vec::new();
+        let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
         for (channel, impulse) in residual.iter().zip(behind.impulse) {
             let response: Vec<f64> = plans.lines(impulse).iter().map(Complex::norm_sqr).collect();
             let shape = |hz: f64| between(&response, hz / step_hz);
-            let counted = if enough(&quiet) { &quiet } else { valid };
-            let own = Bands::new(channel, counted, behind.period_s).fit(&shape);
-            let of = |line: usize| own.power(line as f64 * step_hz, response[line]);
-            gains.push((0..=plans.length / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect());
+            // where hardly anything else is, the rows that turn around show their noise themselves
+            let aside = Some(Bands::new(channel, &quiet, Of::Most, behind.period_s));
+            let aside = aside.filter(|bands| enough(&quiet) && bands.any());
+            let most = if aside.is_some() { behind.turning_noise.powi(2) } else { 0.0 };
+            let own = aside.unwrap_or_else(|| Bands::new(channel, valid, Of::Most, behind.period_s)).fit(&shape);
+            let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s) * shape(hz);
+            // at most what the slope makes of it: the gimbal follows the bearing and takes a part away
+            let turns = Bands::new(channel, &turns, Of::All, behind.period_s);
+            let turning_power = turns.fit_more(&|hz| own.power(hz, shape(hz)), &passed, most);
+            let gain = |more: f64| -> Vec<f64> {
+                let of = |line: usize| {
+                    let hz = line as f64 * step_hz;
+                    own.power(hz, response[line]) + more * passed(hz)
+                };
+                (0..=plans.length / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect()
+            };
+            gains.push(gain(0.0));
+            turning_gains.push(gain(turning_power));
             noise.push(own);
         }
-        Self { noise, valid: valid.to_vec(), gains, slips: Slips::default(), plans }
+        let slow = behind.turning_noise > 0.0;
+        let turning = behind.turning.iter().map(|turning| slow && *turning).collect();
+        Self { noise, valid: valid.to_vec(), gains, turning_gains, turning, slips: Slips::default(), plans }
     }
 
-    /// The same with what whitens the noise of the rate.
+    /// The same with what whitens the noise of the rate turn by turn.
     pub(crate) fn with_slips(self, slips: Slips) -> Self {
         Self { slips, ..self }
     }
@@ -114,20 +140,26 @@ impl Whitener {
         whitened
     }
 
-    /// Through the filter of frequencies alone.
+    /// Through the filters of frequencies alone.
     pub(crate) fn filter(&self, signals: &[Vec<f64>]) -> Vec<f64> {
         let (channels, rows) = (signals.len(), self.valid.len());
         let mut out = vec![0.0; channels * rows];
         for (channel, signal) in signals.iter().enumerate() {
             let masked: Vec<f64> =
                 signal.iter().zip(&self.valid).map(|(value, valid)| if *valid { *value } else { 0.0 }).collect();
-            let mut lines = self.plans.lines(&masked);
-            for (line, gain) in lines.iter_mut().zip(&self.gains[channel]) {
-                *line *= gain / self.plans.length as f64;
-            }
-            let series = self.plans.series(&mut lines);
-            for k in (0..rows).filter(|&k| self.valid[k]) {
-                out[k * channels + channel] = series[k];
+            let lines = self.plans.lines(&masked);
+            for (gain, turning) in [(&self.gains[channel], false), (&self.turning_gains[channel], true)] {
+                if turning && !self.turning.contains(&true) {
+                    continue;
+                }
+                let mut lines = lines.clone();
+                for (line, gain) in lines.iter_mut().zip(gain) {
+                    *line *= gain / self.plans.length as f64;
+                }
+                let series = self.plans.series(&mut lines);
+                for k in (0..rows).filter(|&k| self.valid[k] && self.turning[k] == turning) {
+                    out[k * channels + channel] = series[k];
+                }
             }
         }
         out
@@ -205,6 +237,15 @@ fn low(hz: f64, corner_hz: f64) -> f64 {
     1.0 / (1.0 + (hz / corner_hz) * (hz / corner_hz))
 }
 
+/// What power is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    /// The median of segments that count for half at least: what happens now and then is no noise.
+    Most,
+    /// The mean of segments that count for a tenth at least: noise that comes in bursts.
+    All,
+}
+
 /// Measured power in bands.
 struct Bands {
     hz: Vec<f64>,
@@ -215,17 +256,18 @@ struct Bands {
 
 impl Bands {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
-    fn new(values: &[f64], valid: &[bool], period_s: f64) -> Self {
+    fn new(values: &[f64], valid: &[bool], of: Of, period_s: f64) -> Self {
         let length = SEGMENT.min(values.len());
         let plans = Plans::new(length);
         let window: Vec<f64> =
             (0..length).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / length as f64).cos()).collect();
+        let least = if of == Of::Most { 0.5 } else { 0.1 };
         let mut segments: Vec<Vec<f64>> = Vec::new();
         for start in (0..=values.len() - length).step_by((length / 2).max(1)) {
             let sample = |k: usize| if valid[start + k] { values[start + k] * window[k] } else { 0.0 };
             let gain: f64 = (0..length).filter(|&k| valid[start + k]).map(|k| window[k] * window[k]).sum();
             let all: f64 = window.iter().map(|value| value * value).sum();
-            if gain > 0.5 * all {
+            if gain > least * all {
                 let tapered: Vec<f64> = (0..length).map(sample).collect();
                 segments.push(plans.lines(&tapered).iter().map(|line| line.norm_sqr() / gain).collect());
             }
@@ -247,7 +289,10 @@ impl Bands {
             let n = 2.0 * (to - from) as f64 * length as f64 / plans.length as f64;
             let median = (1.0 - 2.0 / (9.0 * n.max(1.0))).powi(3);
             bands.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
-            bands.power.push(means[means.len() / 2] / median);
+            bands.power.push(match of {
+                Of::Most => means[means.len() / 2] / median,
+                Of::All => means.iter().sum::<f64>() / means.len() as f64,
+            });
             bands.weight.push(n * segments.len() as f64);
         }
         bands
@@ -255,6 +300,22 @@ impl Bands {
 
     fn any(&self) -> bool {
         !self.hz.is_empty()
+    }
+
+    /// How much of a shape more makes the measured powers most likely.
+    fn fit_more(&self, known: &dyn Fn(f64) -> f64, more: &dyn Fn(f64) -> f64, most: f64) -> f64 {
+        let parts: Vec<(f64, f64)> = self.hz.iter().map(|&hz| (known(hz), more(hz))).collect();
+        let mut share = most;
+        for _ in 0..STEPS {
+            let (mut up, mut down) = (0.0, 0.0);
+            for (((known, more), measured), weight) in parts.iter().zip(&self.power).zip(&self.weight) {
+                let model = (known + share * more).max(1e-300);
+                up += weight * more * measured / (model * model);
+                down += weight * more / model;
+            }
+            share = (share * up / down.max(1e-300)).min(most);
+        }
+        share
     }
 
     /// The shapes that make the measured powers most likely.

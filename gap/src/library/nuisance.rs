@@ -11,8 +11,6 @@ const BEYOND: f64 = 0.12;
 
 /// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of 1 % would not.
 const STEP: f64 = 0.02;
-/// Time constants of the electronics are mostly closer to what they should be than gains and torques are.
-const CLOSER: f64 = 1.0;
 /// Alignment of the accelerometers with the platform's axes [rad].
 const ALIGNMENT_RAD: f64 = 1e-3;
 
@@ -37,7 +35,7 @@ impl Nuisance {
     /// holds at the shift `ahead`.
     ///
     /// ```text
-    /// cost = (s / sigma)^2 + (max(0, |s| - tol) / (0.12 tol))^2        sigma 0.7 tol, or 0.28 tol for a time constant
+    /// cost = (s / sigma)^2 + (max(0, |s| - tol) / (0.12 tol))^2        sigma = 0.7 tol
     /// ```
     #[must_use]
     pub fn prior(&self, shift: f64, ahead: f64) -> (f64, f64, f64) {
@@ -82,11 +80,6 @@ macro_rules! relative {
     };
 }
 
-/// Within its tolerance, near its nominal value rather than anywhere.
-fn closer(nuisance: Nuisance) -> Nuisance {
-    Nuisance { sigma: CLOSER * nuisance.sigma, ..nuisance }
-}
-
 /// Every nominal parameter of the platform.
 #[must_use]
 pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
@@ -120,15 +113,15 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative!(tolerance.gimbal_inertia, "gimbal_inertia", p => p.config.servo.gimbal_inertia_kg_m2),
         relative!(default, "float inertia", p => p.config.gyro.float_inertia_kg_m2),
         relative!(default, "slip rate", p => p.config.bearing.slip_rate_radps),
-        closer(relative!(default, "T1", p => p.config.servo.lead_time_constants_s[0])),
-        closer(relative!(default, "T2", p => p.config.servo.lead_time_constants_s[1])),
-        closer(relative!(default, "T3", p => p.config.servo.lead_time_constants_s[2])),
-        closer(relative!(default, "T4", p => p.config.servo.lead_time_constants_s[3])),
-        closer(relative!(default, "T5", p => p.config.servo.lead_time_constants_s[4])),
-        closer(relative!(default, "T6", p => p.config.servo.lag_time_constants_s[0])),
-        closer(relative!(default, "T7", p => p.config.servo.lag_time_constants_s[1])),
-        closer(relative!(default, "T8", p => p.config.servo.lag_time_constants_s[2])),
-        closer(relative!(default, "T9", p => p.config.servo.lag_time_constants_s[3])),
+        relative!(default, "T1", p => p.config.servo.lead_time_constants_s[0]),
+        relative!(default, "T2", p => p.config.servo.lead_time_constants_s[1]),
+        relative!(default, "T3", p => p.config.servo.lead_time_constants_s[2]),
+        relative!(default, "T4", p => p.config.servo.lead_time_constants_s[3]),
+        relative!(default, "T5", p => p.config.servo.lead_time_constants_s[4]),
+        relative!(default, "T6", p => p.config.servo.lag_time_constants_s[0]),
+        relative!(default, "T7", p => p.config.servo.lag_time_constants_s[1]),
+        relative!(default, "T8", p => p.config.servo.lag_time_constants_s[2]),
+        relative!(default, "T9", p => p.config.servo.lag_time_constants_s[3]),
         relative!(tolerance.pickoff_scale, "pickoff_scale", p => p.measurement.pickoff_factor),
         relative!(tolerance.torque_scale, "torque_scale", p => p.measurement.torque_factor),
     ]
