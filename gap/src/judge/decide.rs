@@ -104,6 +104,14 @@ pub struct Decision {
     pub notes: Vec<String>,
 }
 
+impl Decision {
+    /// What the rest goes with, where it does with something.
+    #[must_use]
+    pub fn goes_with(&self) -> Option<&Stranger> {
+        self.strangers.first().filter(|stranger| stranger.nats() > STRANGE)
+    }
+}
+
 /// Judges what the search found.
 #[must_use]
 #[allow(clippy::too_many_lines, reason = "one decision, told in its order")]
@@ -221,12 +229,8 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     } else if unknown > 0.5 {
         decision.verdict = Verdict::Unexplained;
     }
-    if let Some(stranger) = decision.strangers.first().filter(|stranger| stranger.nats() > STRANGE) {
-        decision.notes.push(format!(
-            "what is left goes with {}: {:.0} nats beyond chance",
-            stranger.of,
-            stranger.nats()
-        ));
+    if let Some(stranger) = decision.goes_with() {
+        decision.notes.push(format!("what is left goes with {stranger}"));
     }
     direct(problem, fit, tolerance, &mut decision);
     decision

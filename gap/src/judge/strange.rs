@@ -7,6 +7,8 @@
 //!
 //! Of n torques, chance gives a gain of n, with a scatter of sqrt(2 n).
 
+use std::fmt;
+
 use super::torques::groups;
 use crate::fit::{Fit, Linear, Problem, solve};
 
@@ -29,6 +31,12 @@ impl Stranger {
     #[must_use]
     pub fn nats(&self) -> f64 {
         0.5 * (self.gain - self.torques as f64)
+    }
+}
+
+impl fmt::Display for Stranger {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} ({:.0} nats beyond chance)", self.of, self.nats())
     }
 }
 

@@ -138,7 +138,11 @@ fn left_over(out: &mut String, diagnosis: &Diagnosis) {
             first_s + portrait.span_s[1]
         ),
     ));
-    rows.push(row("follows", &listed(&portrait.depends_on)));
+    let goes_with = diagnosis.decision.iter().find_map(|decision| decision.goes_with());
+    rows.extend(goes_with.map(|stranger| row("goes with", &stranger.to_string())));
+    if goes_with.is_none() || !portrait.depends_on.is_empty() {
+        rows.push(row("follows", &listed(&portrait.depends_on)));
+    }
     rows.push(row("effects that would take some", &listed(&nearest)));
     let _ = write!(out, "<h2>What is left</h2><table>{}</table>", rows.concat());
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use gimbal_plant::Effect;
 
 use crate::diagnose::Diagnosis;
-use crate::judge::{Verdict, experiment};
+use crate::judge::{Decision, Verdict, experiment};
 
 /// The verdict in words.
 #[must_use]
@@ -27,15 +27,12 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         Verdict::Explained => writeln!(out, "Explained by {}.", named.join(" and ")),
         Verdict::PartlyExplained => writeln!(
             out,
-            "Partly explained by {}; something else remains (it stands out by {:.0} standard deviations).",
+            "Partly explained by {}; something else remains{}.",
             named.join(" and "),
-            decision.left_over[1]
+            remains(decision, decision.left_over[1])
         ),
         Verdict::Unexplained => {
-            let far = decision.left_over[0];
-            let told =
-                if far > 1.0 { format!(" (it stands out by {far:.0} standard deviations)") } else { String::new() };
-            writeln!(out, "A gap that no effect of the library explains{told}.")
+            writeln!(out, "A gap that no effect of the library explains{}.", remains(decision, decision.left_over[0]))
         }
         Verdict::CannotTell => writeln!(out, "Cannot tell: {} or one of these:", named.join(" and ")),
     };
@@ -81,6 +78,16 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         );
     }
     out.trim_end().to_owned()
+}
+
+/// How far what is left stands out, and what it goes with.
+fn remains(decision: &Decision, far: f64) -> String {
+    let mut told = Vec::new();
+    if far > 1.0 {
+        told.push(format!("stands out by {far:.0} standard deviations"));
+    }
+    told.extend(decision.goes_with().map(|stranger| format!("goes with {stranger}")));
+    if told.is_empty() { String::new() } else { format!(": it {}", told.join(" and ")) }
 }
 
 fn sentence(name: &str, probability: f64, values: &[f64], errors: &[f64]) -> String {
