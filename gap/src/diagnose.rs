@@ -3,7 +3,7 @@
 use gimbal_log::Log;
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Fit, Problem, Search, null, raw_residual, search, search_from, without};
+use crate::fit::{Fit, Ground, Problem, Search, null, raw_residual, search, search_from, without};
 use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Verdict, Yardstick, bounds_hit, correlations,
     curve, decide, detectable, free_running, one_step, portrait, shrink,
@@ -177,8 +177,9 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
 /// high, and that what an effect did, or what the nominal parameters could not take away at once, was in it.
 fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
     let quiet = |problem: &Problem, fit: &Fit| fit.square < TOO_QUIET * problem.whitener.count() as f64;
-    let again = |fit: &Fit| Problem::with_noise(record, model, Some(&raw_residual(record, &fit.prediction)));
-    let mut problem = Problem::new(record, model);
+    let ground = Ground::new(record, model);
+    let again = |fit: &Fit| ground.problem(Some(raw_residual(record, &fit.prediction)));
+    let mut problem = ground.problem(None);
     let mut nominal = null(&problem);
     if quiet(&problem, &nominal) {
         problem = again(&nominal);

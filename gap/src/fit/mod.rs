@@ -1,10 +1,12 @@
 //! Fitting: whitened residuals, sensitivities, normal equations, and the search over effects.
 
 mod draft;
+mod ground;
 mod hypothesis;
 mod linear;
 mod normal;
 mod path;
+mod plans;
 mod problem;
 mod pull;
 mod refine;
@@ -17,6 +19,7 @@ mod slip;
 mod turning;
 mod whiten;
 
+pub(crate) use ground::Ground;
 pub(crate) use linear::Linear;
 pub use normal::Solution;
 pub(crate) use normal::{drive, slices, solve};

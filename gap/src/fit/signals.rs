@@ -36,6 +36,13 @@ pub(crate) fn difference(record: &Record, moved: &Prediction, base: &Prediction,
     record.channels.iter().map(of).collect()
 }
 
+/// Each channel times its own factor.
+pub(crate) fn scaled(mut signals: Signals, by: &[f64]) -> Signals {
+    scale(std::slice::from_mut(&mut signals), by);
+    signals
+}
+
+/// The same of many.
 pub(crate) fn scale(columns: &mut [Signals], by: &[f64]) {
     columns.par_iter_mut().for_each(|signals| {
         for (signal, by) in signals.iter_mut().zip(by) {

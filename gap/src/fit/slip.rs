@@ -10,7 +10,7 @@
 //! one block after the other, a' = a after the blocks before it: what comes out is white (Potter's square root).
 //! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant.
 
-use super::signals::{Signals, difference, scale};
+use super::signals::{Signals, difference, scaled};
 use crate::record::{RateNoise, Record};
 use crate::simulate::{Begin, Inputs, Physics, Prediction, predict};
 
@@ -56,7 +56,7 @@ pub(crate) struct Turning<'a> {
 impl Slips {
     /// Whitens samples of all channels, row after row.
     pub(crate) fn apply(&self, whitened: &mut [f64]) {
-        self.0.iter().for_each(|pulse| pulse.apply(whitened));
+        self.0.iter().for_each(|pulse| pulse.apply(0, whitened));
     }
 
     /// From the blocks as each shows after the filter of frequencies.
@@ -74,7 +74,7 @@ impl Slips {
             }
             // what the blocks before it leave
             for pulse in &slips.0 {
-                pulse.apply_to(first, &mut values);
+                pulse.apply(first, &mut values);
             }
             let square: f64 = values.iter().map(|value| value * value).sum();
             if square > LEAST {
@@ -86,12 +86,8 @@ impl Slips {
 }
 
 impl Pulse {
-    fn apply(&self, whitened: &mut [f64]) {
-        self.apply_to(0, whitened);
-    }
-
     /// To samples that begin at `first`.
-    fn apply_to(&self, first: usize, samples: &mut [f64]) {
+    fn apply(&self, first: usize, samples: &mut [f64]) {
         let (from, to) = (self.first.max(first), (self.first + self.values.len()).min(first + samples.len()));
         if from >= to {
             return;
@@ -151,9 +147,7 @@ impl Turning<'_> {
 
     fn moved(&self, inputs: &Inputs, step: f64) -> Signals {
         let moved = predict(self.base, inputs, self.begin, usize::MAX);
-        let mut moved = vec![difference(self.record, &moved, self.nominal, step)];
-        scale(&mut moved, self.scaled);
-        moved.swap_remove(0)
+        scaled(difference(self.record, &moved, self.nominal, step), self.scaled)
     }
 }
 

@@ -42,8 +42,7 @@ pub(crate) fn impulse_nm(base: &Physics, record: &Record) -> f64 {
 /// Rows at which the bearing turns around: within the slip rate, or past it from one row to the next.
 pub(crate) fn turns(base: &Physics, record: &Record, nominal: &Prediction) -> Vec<bool> {
     let slip_radps = base.config.bearing.slip_rate_radps;
-    let rates = record.inputs.rate_radps.iter().zip(&nominal.gimbal_rate_radps);
-    let slips: Vec<f64> = rates.map(|(vehicle, gimbal)| vehicle - gimbal).collect();
+    let slips = record.inputs.slip_radps(nominal);
     let mut turns = vec![false; slips.len()];
     for k in 1..slips.len() {
         if slips[k - 1].min(slips[k]) < slip_radps && slips[k - 1].max(slips[k]) > -slip_radps {

@@ -11,12 +11,9 @@
 //! comes through the slope of the friction law: `P + s^2 W(f) |G(f)|^2`, s the torque that the rate's noise makes, W
 //! Wiener's filter: of noise and motion it leaves that much to be off.
 
-use std::fmt;
-use std::sync::Arc;
-
 use realfft::num_complex::Complex;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
+use super::plans::Plans;
 use super::slip::Slips;
 use crate::record::{RateNoise, between};
 
@@ -59,20 +56,6 @@ pub struct Whitener {
     plans: Plans,
 }
 
-/// The transforms there and back.
-#[derive(Clone)]
-pub(super) struct Plans {
-    length: usize,
-    forward: Arc<dyn RealToComplex<f64>>,
-    back: Arc<dyn ComplexToReal<f64>>,
-}
-
-impl fmt::Debug for Plans {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "transforms of {}", self.length)
-    }
-}
-
 /// Where the noise of inputs acts.
 #[derive(Debug, Clone, Copy)]
 pub struct Loop<'a> {
@@ -94,9 +77,10 @@ impl Whitener {
     pub fn new(residual: &[Vec<f64>], valid: &[bool], behind: Loop) -> Self {
         let rows = valid.len();
         let plans = Plans::new(rows + SEGMENT.min(rows));
-        let step_hz = 1.0 / (plans.length as f64 * behind.period_s);
+        let step_hz = 1.0 / (plans.length() as f64 * behind.period_s);
         let quiet: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && !turning).collect();
         let turns: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && *turning).collect();
+        let slow = behind.turning_noise > 0.0;
         let mut noise = Vec::new();
         let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
         for (channel, impulse) in residual.iter().zip(behind.impulse) {
@@ -109,20 +93,23 @@ impl Whitener {
             let own = aside.unwrap_or_else(|| Bands::new(channel, valid, Of::Most, behind.period_s)).fit(&shape);
             let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s) * shape(hz);
             // at most what the slope makes of it: the gimbal follows the bearing and takes a part away
-            let turns = Bands::new(channel, &turns, Of::All, behind.period_s);
-            let turning_power = turns.fit_more(&|hz| own.power(hz, shape(hz)), &passed, most);
+            let turning_power = if most > 0.0 {
+                let turns = Bands::new(channel, &turns, Of::All, behind.period_s);
+                turns.fit_more(&|hz| own.power(hz, shape(hz)), &passed, most)
+            } else {
+                0.0
+            };
             let gain = |more: f64| -> Vec<f64> {
                 let of = |line: usize| {
                     let hz = line as f64 * step_hz;
                     own.power(hz, response[line]) + more * passed(hz)
                 };
-                (0..=plans.length / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect()
+                (0..=plans.length() / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect()
             };
             gains.push(gain(0.0));
-            turning_gains.push(gain(turning_power));
+            turning_gains.push(if slow { gain(turning_power) } else { Vec::new() });
             noise.push(own);
         }
-        let slow = behind.turning_noise > 0.0;
         let turning = behind.turning.iter().map(|turning| slow && *turning).collect();
         Self { noise, valid: valid.to_vec(), gains, turning_gains, turning, slips: Slips::default(), plans }
     }
@@ -148,13 +135,11 @@ impl Whitener {
             let masked: Vec<f64> =
                 signal.iter().zip(&self.valid).map(|(value, valid)| if *valid { *value } else { 0.0 }).collect();
             let lines = self.plans.lines(&masked);
-            for (gain, turning) in [(&self.gains[channel], false), (&self.turning_gains[channel], true)] {
-                if turning && !self.turning.contains(&true) {
-                    continue;
-                }
+            let filters = [(&self.gains[channel], false), (&self.turning_gains[channel], true)];
+            for (gain, turning) in filters.into_iter().filter(|(gain, _)| !gain.is_empty()) {
                 let mut lines = lines.clone();
                 for (line, gain) in lines.iter_mut().zip(gain) {
-                    *line *= gain / self.plans.length as f64;
+                    *line *= gain / self.plans.length() as f64;
                 }
                 let series = self.plans.series(&mut lines);
                 for k in (0..rows).filter(|&k| self.valid[k] && self.turning[k] == turning) {
@@ -188,42 +173,6 @@ impl Whitener {
     #[must_use]
     pub fn count(&self) -> usize {
         self.gains.len() * self.valid.iter().filter(|valid| **valid).count()
-    }
-}
-
-impl Plans {
-    fn new(least: usize) -> Self {
-        let mut length = least.next_power_of_two();
-        for odd in [3, 5, 9, 15] {
-            let other = odd * (least.div_ceil(odd)).next_power_of_two();
-            length = length.min(other.max(2));
-        }
-        let mut planner = RealFftPlanner::<f64>::new();
-        Self { length, forward: planner.plan_fft_forward(length), back: planner.plan_fft_inverse(length) }
-    }
-
-    pub(super) fn length(&self) -> usize {
-        self.length
-    }
-
-    pub(super) fn lines(&self, values: &[f64]) -> Vec<Complex<f64>> {
-        let mut padded = values.to_vec();
-        padded.resize(self.length, 0.0);
-        let mut lines = self.forward.make_output_vec();
-        // lengths are the plan's own
-        let _ = self.forward.process(&mut padded, &mut lines);
-        lines
-    }
-
-    /// The values whose lines these are, times their number.
-    pub(super) fn series(&self, lines: &mut [Complex<f64>]) -> Vec<f64> {
-        lines[0].im = 0.0;
-        if let Some(last) = lines.last_mut() {
-            last.im = 0.0;
-        }
-        let mut series = self.back.make_output_vec();
-        let _ = self.back.process(lines, &mut series);
-        series
     }
 }
 
@@ -272,13 +221,13 @@ impl Bands {
                 segments.push(plans.lines(&tapered).iter().map(|line| line.norm_sqr() / gain).collect());
             }
         }
-        let step_hz = 1.0 / (plans.length as f64 * period_s);
+        let step_hz = 1.0 / (plans.length() as f64 * period_s);
         let (first, last) = (1.5 * step_hz, 0.5 / period_s);
         let edge = |band: usize| first * (last / first).powf(band as f64 / BANDS as f64);
         let mut bands = Self { hz: Vec::new(), power: Vec::new(), weight: Vec::new() };
         for band in 0..BANDS {
             let (from, to) = ((edge(band) / step_hz).ceil() as usize, (edge(band + 1) / step_hz).ceil() as usize);
-            let to = to.min(plans.length / 2);
+            let to = to.min(plans.length() / 2);
             if segments.is_empty() || to <= from {
                 continue;
             }
@@ -286,7 +235,7 @@ impl Bands {
                 segments.iter().map(|power| power[from..to].iter().sum::<f64>() / (to - from) as f64).collect();
             means.sort_by(f64::total_cmp);
             // the median of a chi square of n degrees over its mean
-            let n = 2.0 * (to - from) as f64 * length as f64 / plans.length as f64;
+            let n = 2.0 * (to - from) as f64 * length as f64 / plans.length() as f64;
             let median = (1.0 - 2.0 / (9.0 * n.max(1.0))).powi(3);
             bands.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
             bands.power.push(match of {

@@ -34,8 +34,7 @@ pub fn curve(problem: &Problem, fit: &Fit, nominal: &Prediction) -> Vec<CurvePoi
     };
     let residual = &raw_residual(record, &fit.prediction)[place];
     let valid = &record.channels[place].valid;
-    let rate: Vec<f64> =
-        record.inputs.rate_radps.iter().zip(&fit.prediction.gimbal_rate_radps).map(|(a, b)| a - b).collect();
+    let rate = record.inputs.slip_radps(&fit.prediction);
     let mut order: Vec<usize> = (0..record.rows()).filter(|&k| valid[k]).collect();
     order.sort_by(|a, b| rate[*a].total_cmp(&rate[*b]));
     let count = order.len() / BINS;

@@ -153,11 +153,9 @@ fn dependences(problem: &Problem, fit: &Fit, residual: &[f64], valid: &[bool]) -
     let record = problem.record;
     let inputs = &record.inputs;
     let period_s = inputs.period_s;
-    let gimbal_rate = &fit.prediction.gimbal_rate_radps;
-    let rate: Vec<f64> = inputs.rate_radps.iter().zip(gimbal_rate).map(|(vehicle, own)| vehicle - own).collect();
+    let rate = inputs.slip_radps(&fit.prediction);
     let load: Vec<f64> = inputs.accel_mps2[0].iter().zip(&inputs.accel_mps2[1]).map(|(x, y)| x.hypot(*y)).collect();
-    let angle: Vec<f64> =
-        inputs.turned_rad.iter().zip(&fit.prediction.gimbal_angle_rad).map(|(turned, phi)| turned - phi).collect();
+    let angle = inputs.rel_rad(&fit.prediction);
     let torque = &fit.prediction.motor_torque_nm;
     let time: Vec<f64> = (0..record.rows()).map(|k| k as f64 * period_s).collect();
     let size = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();

@@ -51,9 +51,7 @@ struct Motion<'a> {
 impl<'a> Motion<'a> {
     fn new(problem: &Problem, fit: &'a Fit) -> Self {
         let inputs = &problem.record.inputs;
-        let less = |a: &[f64], b: &[f64]| -> Series { a.iter().zip(b).map(|(a, b)| a - b).collect() };
-        let rel = less(&inputs.turned_rad, &fit.prediction.gimbal_angle_rad);
-        let slip = less(&inputs.rate_radps, &fit.prediction.gimbal_rate_radps);
+        let (rel, slip) = (inputs.rel_rad(&fit.prediction), inputs.slip_radps(&fit.prediction));
         let soft = problem.base.config.bearing.slip_rate_radps;
         let rows: Series = (0..inputs.len()).map(|k| k as f64).collect();
         Self {

@@ -26,7 +26,7 @@ pub fn regimes(record: &Record, prediction: &Prediction, contribution: &[f64], c
     let radial: Vec<f64> = inputs.accel_mps2[0].iter().zip(&inputs.accel_mps2[1]).map(|(x, y)| x.hypot(*y)).collect();
     let torque: Vec<f64> = prediction.motor_torque_nm.iter().map(|value| value.abs()).collect();
     let theta: Vec<f64> = prediction.gyro_angle_rad.iter().map(|value| value.abs()).collect();
-    let w: Vec<f64> = inputs.rate_radps.iter().zip(&prediction.gimbal_rate_radps).map(|(a, b)| a - b).collect();
+    let w = inputs.slip_radps(prediction);
     let (load_high, load_low) = (quantile(&radial, 0.67), quantile(&radial, 0.33));
     let (torque_high, torque_low) = (quantile(&torque, 0.67), quantile(&torque, 0.33));
     let theta_high = quantile(&theta, 0.9);

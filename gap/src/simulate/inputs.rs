@@ -2,6 +2,7 @@
 
 use gimbal_servo::bearing;
 
+use super::Prediction;
 use super::bearing::load_nm;
 
 /// Inputs at every row; missing samples filled in.
@@ -74,6 +75,18 @@ impl Inputs {
         self.rate_radps.is_empty()
     }
 
+    /// Slip rate of the bearing, `rate - phi'` [rad/s].
+    #[must_use]
+    pub fn slip_radps(&self, prediction: &Prediction) -> Vec<f64> {
+        less(&self.rate_radps, &prediction.gimbal_rate_radps)
+    }
+
+    /// Angle of the gimbal in the vehicle, `turned - phi` [rad].
+    #[must_use]
+    pub fn rel_rad(&self, prediction: &Prediction) -> Vec<f64> {
+        less(&self.turned_rad, &prediction.gimbal_angle_rad)
+    }
+
     /// The inputs as they were: the log has them late by `skew_s`.
     #[must_use]
     pub fn advanced(&self, skew_s: f64) -> Self {
@@ -102,6 +115,10 @@ impl Inputs {
             bulge_nm: moved(&self.bulge_nm),
         }
     }
+}
+
+fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// A vector after a small turn about x, y, z.

@@ -1,0 +1,190 @@
+//! What a log and a model give before anything is taken for noise: nominal prediction, sensitivities to everything, what
+//! a torque on the gimbal does.
+
+use gimbal_model_file::ModelFile;
+
+use super::draft::Draft;
+use super::path::Path;
+use super::rest::{Raw, rest};
+use super::ripple;
+use super::signals::{Signals, peak, residual, scale, scaled, valid};
+use super::slip::{Slips, Turning};
+use super::turning::{at_once, impulse, impulse_nm, remembered, turning_noise, turns};
+use super::whiten::Loop;
+use super::{Columns, Problem, Whitener};
+use crate::library::{Candidate, Nuisance, Offer, candidates, hold, not_looked_for, nuisances, platform};
+use crate::record::{Record, Signal, rough};
+use crate::simulate::{Begin, Physics, Prediction, predict};
+
+/// Problems under any noise are made from this.
+pub(crate) struct Ground<'a> {
+    record: &'a Record,
+    stop_rad: f64,
+    base: Physics,
+    begin: Begin,
+    nominal: Prediction,
+    /// Rms of the noise of each channel, and one over it.
+    noise: Vec<f64>,
+    over_noise: Vec<f64>,
+    nuisances: Vec<Nuisance>,
+    /// All but ripple, whose cycles show in what is left.
+    candidates: Vec<Candidate>,
+    not_looked_for: Vec<&'static str>,
+    offer: Offer<'static>,
+    columns: Columns,
+    sigma: Vec<f64>,
+    /// Sensitivities and nominal residual over the noise.
+    raw: Vec<Signals>,
+    target: Signals,
+    /// Each channel after an impulse of torque, over the noise.
+    impulse: Signals,
+    valid: Vec<bool>,
+    /// Rows at which the bearing turns around.
+    turns: Vec<bool>,
+}
+
+impl<'a> Ground<'a> {
+    /// Predicts and differentiates.
+    pub(crate) fn new(record: &'a Record, model: &ModelFile) -> Self {
+        let mut base = platform(model);
+        let not_looked_for = not_looked_for(model);
+        base.config.period_s = record.inputs.period_s;
+        // the float goes as far as the log shows that it goes
+        let reached = record.channel(Signal::GyroAngle).map_or(0.0, |channel| peak(&channel.values));
+        base.config.gyro.stop_angle_rad =
+            record.plateau_rad.unwrap_or(base.config.gyro.stop_angle_rad.max(1.2 * reached));
+        let begin = record.begin(&base, &record.inputs);
+        let nominal = predict(&base, &record.inputs, &begin, record.rows());
+        let target = residual(record, &nominal);
+        let noise: Vec<f64> =
+            target.iter().zip(&record.channels).map(|(raw, channel)| rough(raw, &channel.valid)).collect();
+        let over_noise: Vec<f64> = noise.iter().map(|noise| 1.0 / noise).collect();
+        let mut nuisances = nuisances(&model.tolerance, &base);
+        hold(&mut nuisances, &model.known_good);
+        let offer = offer(record, &nominal);
+        let mut candidates = candidates(&record.inputs, &offer);
+        candidates.retain(|candidate| !not_looked_for.contains(&candidate.effect));
+        let draft = Draft { record, base: &base, begin: &begin, nominal: &nominal };
+        let (columns, mut raw, sigma) = draft.columns(&nuisances, &candidates);
+        scale(&mut raw, &over_noise);
+        Self {
+            record,
+            stop_rad: model.config.gyro.stop_angle_rad,
+            target: scaled(target, &over_noise),
+            impulse: scaled(impulse(&base, record), &over_noise),
+            valid: valid(record),
+            turns: turns(&base, record, &nominal),
+            base,
+            begin,
+            nominal,
+            noise,
+            over_noise,
+            nuisances,
+            candidates,
+            not_looked_for,
+            offer,
+            columns,
+            sigma,
+            raw,
+        }
+    }
+
+    /// Under the noise that a residual shows; without one, under what the nominal parameters and a few effects do not
+    /// explain.
+    pub(crate) fn problem(&self, known: Option<Signals>) -> Problem<'a> {
+        let rest = match known {
+            None => {
+                let raw = Raw { columns: &self.raw, layout: &self.columns, sigma: &self.sigma, valid: &self.valid };
+                rest(&raw, &self.target)
+            }
+            Some(known) => scaled(known, &self.over_noise),
+        };
+        let turns_at_once = at_once(&self.turns);
+        let whitener = self.whitener(&rest, turns_at_once);
+        let period_s = self.record.inputs.period_s;
+        let path = Path::new(&whitener, &self.impulse, impulse_nm(&self.base, self.record), period_s);
+        let (mut candidates, mut columns, mut sigma) =
+            (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
+        let mut more: Vec<Signals> = Vec::new();
+        for candidate in self.ripples(&path, &whitener, &rest) {
+            columns.first.push(self.raw.len() + more.len());
+            sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
+            more.extend(self.draft().probes(&candidate));
+            candidates.push(candidate);
+        }
+        scale(&mut more, &self.over_noise);
+        let problem = Problem {
+            record: self.record,
+            stop_rad: self.stop_rad,
+            base: self.base.clone(),
+            begin: self.begin.clone(),
+            nuisances: self.nuisances.clone(),
+            candidates,
+            not_looked_for: self.not_looked_for.clone(),
+            columns,
+            whitened: Vec::new(),
+            gram: nalgebra::DMatrix::zeros(0, 0),
+            whitener,
+            path,
+            turns_at_once,
+            noise: self.noise.clone(),
+            sigma,
+        };
+        problem.with_columns(&self.raw, &more)
+    }
+
+    fn draft(&self) -> Draft<'_> {
+        Draft { record: self.record, base: &self.base, begin: &self.begin, nominal: &self.nominal }
+    }
+
+    fn whitener(&self, rest: &Signals, turns_at_once: bool) -> Whitener {
+        let (base, record, nominal, turns) = (&self.base, self.record, &self.nominal, &self.turns);
+        let turning_noise = if turns_at_once { 0.0 } else { turning_noise(base, record, nominal, turns) };
+        let (period_s, rate_noise) = (record.inputs.period_s, &record.rate_noise);
+        let turning = &remembered(turns);
+        let behind = Loop { impulse: &self.impulse, turning, turning_noise, rate_noise, period_s };
+        let whitener = Whitener::new(rest, &self.valid, behind);
+        if !turns_at_once {
+            return whitener;
+        }
+        let turning = Turning { record, base, begin: &self.begin, nominal, turns, scaled: &self.over_noise };
+        let slips = Slips::new(&turning, |signals| whitener.filter(signals));
+        whitener.with_slips(slips)
+    }
+
+    /// Ripple at the lines that stand out of what is left.
+    fn ripples(&self, path: &Path, whitener: &Whitener, rest: &Signals) -> Vec<Candidate> {
+        if self.not_looked_for.contains(&"torque_ripple") {
+            return Vec::new();
+        }
+        let inputs = &self.record.inputs;
+        let drive = path.drive(whitener, &whitener.apply(rest));
+        let cycles = ripple::cycles(path, &drive, &inputs.rel_rad(&self.nominal), &self.valid, inputs.period_s);
+        let offer = Offer { cycles: &cycles, ..self.offer };
+        candidates(inputs, &offer).into_iter().filter(|candidate| candidate.effect == "torque_ripple").collect()
+    }
+}
+
+/// What the log offers to the effects.
+fn offer(record: &Record, nominal: &Prediction) -> Offer<'static> {
+    let sees = |signal| record.channel(signal).is_some();
+    Offer {
+        peak_torque_nm: record
+            .channel(Signal::MotorTorque)
+            .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| high(&channel.values)),
+        cycles: &[],
+        sees_gimbal: sees(Signal::GimbalAngle),
+        sees_torque: sees(Signal::MotorTorque),
+        sees_cross: !record.inputs.cross_radps.is_empty(),
+    }
+}
+
+/// Largest value that is held for a few rows.
+fn high(values: &[f64]) -> f64 {
+    values
+        .windows(5)
+        .map(|few| {
+            few.iter().fold(f64::MAX, |least, value| if value.is_finite() { least.min(value.abs()) } else { 0.0 })
+        })
+        .fold(0.0, f64::max)
+}
