@@ -2,16 +2,25 @@
 
 use gimbal_model_file::AxisModel;
 
+use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms, shapes};
 use super::motion::Motion;
 use super::regress::Grams;
-use super::search::{Candidate, LEAST_SHARE, Problem, Set};
+use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
 
 /// Numbers of waves that are kept from the search, for each kind of ripple.
 const KEPT_WAVES: usize = 12;
+/// Rows at which friction is looked at.
+const SLIP_ROWS: usize = 400;
+/// Slip is steady where its direction is smoothed by no more than this.
+const STEADY: f64 = 0.97;
+/// Play of a hysteresis at most, over the travel.
+const WIDEST_PLAY: f64 = 0.5;
 /// A column must keep this share of its power beside the nominal parameters, and this much through the band.
 const LEAST_KEPT: f64 = 1e-4;
 const LEAST_PASSED: f64 = 0.02;
+/// And no more than this share of its deviation may be noise of the motion.
+const MOST_NOISE: f64 = 0.4;
 
 /// One log's balance.
 #[derive(Debug)]
@@ -94,6 +103,11 @@ impl Balance {
                 hidden.push(shape.effect());
                 continue;
             }
+            // a column that is noise of the motion regresses on that of the acceleration
+            if noise_of(&shape, &motion, model) > MOST_NOISE * through {
+                hidden.push(shape.effect());
+                continue;
+            }
             let start = columns.len();
             columns.extend(grid);
             candidates.push(Candidate { shape, columns: (start..columns.len()).collect() });
@@ -115,6 +129,7 @@ impl Balance {
         set_priors(&mut grams, model, rest, &motion, 0);
         let floor_square = motion.floor.powi(2) * target.len() as f64;
         let effort_square = effort.iter().map(|u| u * u).sum();
+        let slip = slip(&motion, parameters, &columns, &candidates);
         let problem = Problem {
             base: vec![0, 1, 2],
             candidates,
@@ -123,6 +138,8 @@ impl Balance {
             effort_square,
             least_share: LEAST_SHARE,
             nominal: Some(parameters),
+            slip,
+            within: within(model, parameters),
         };
         Self { motion, target, effort, columns, problem, hidden }
     }
@@ -158,7 +175,34 @@ impl Balance {
                 shifts[index] += own.map_or(0.0, |place| amplitudes[place]);
             }
         }
+        // a taper has its level somewhere on the travel
+        for &member in members {
+            let candidate = &self.problem.candidates[member];
+            if candidate.shape == Shape::FrictionTaper {
+                let own = columns.iter().position(|column| *column == candidate.columns[0]);
+                let reach = own.map_or(0.0, |place| 0.5 * amplitudes[place].abs() * self.motion.travel);
+                shifts[2] -= shifts[2].clamp(-reach, reach);
+            }
+        }
         shifts
+    }
+
+    /// How far noise of the motion may shift inertia and viscous friction: it is in the column and, through the loop, in
+    /// the effort. By Cauchy and Schwarz the shift is no more than
+    ///
+    /// ```text
+    /// abs(shift) <= sigma_noise (rms left + floor) / var(column)
+    /// ```
+    pub(super) fn of_noise(&self) -> [f64; 3] {
+        let rows = self.target.len().max(1) as f64;
+        let noise = [self.motion.acceleration_noise, self.motion.rate_noise, 0.0];
+        let left = rms(&self.residual(&[])).min(2.0 * self.motion.floor) + self.motion.floor;
+        std::array::from_fn(|place| {
+            let beside: Vec<usize> = (0..3).filter(|other| *other != place).collect();
+            let grams = &self.problem.grams;
+            let variance = grams.power(place) * grams.keeps(place, &beside) / rows;
+            noise[place] * left / variance.max(1e-300)
+        })
     }
 
     /// What a set leaves, on the grid.
@@ -184,7 +228,12 @@ impl Balance {
             let rest: Vec<usize> = self.problem.columns(&others);
             let span =
                 if name == "wave_number" { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
-            let (from, to) = if name == "exponent" { (0.45, 0.85) } else { (value / span, value * span) };
+            let (from, to) = match &shape {
+                Shape::ViscousCurve { .. } => (0.45, 0.85),
+                // wider than that it is a spring
+                Shape::Hysteresis { .. } => (value / span, (value * span).min(WIDEST_PLAY * self.motion.travel)),
+                _ => (value / span, value * span),
+            };
             let cost = |number: f64| {
                 let grid = shape.with(number).on_grid(&self.motion);
                 let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
@@ -199,6 +248,11 @@ impl Balance {
             let shape = shape.with(best);
             let start = self.columns.len();
             self.columns.extend(shape.on_grid(&self.motion));
+            for column in &self.columns[start..] {
+                let friction = shape.brakes();
+                let along = if friction { self.problem.slip.along(column) } else { Vec::new() };
+                self.problem.slip.columns.push(along);
+            }
             self.problem.candidates.push(Candidate { shape, columns: (start..self.columns.len()).collect() });
             added = true;
         }
@@ -208,6 +262,15 @@ impl Balance {
             self.problem.grams.precision[..precision.len()].copy_from_slice(&precision);
             let _ = model;
         }
+    }
+}
+
+/// Noise that the motion brings into a column of its higher derivatives.
+fn noise_of(shape: &Shape, motion: &Motion, model: &AxisModel) -> f64 {
+    match shape {
+        Shape::Lag => model.inertia * motion.derivative_noise(3),
+        Shape::Flexible => motion.derivative_noise(4),
+        _ => 0.0,
     }
 }
 
@@ -229,6 +292,34 @@ fn golden(from: f64, to: f64, cost: impl Fn(f64) -> f64) -> f64 {
         }
     }
     if at_a < at_b { a.exp() } else { b.exp() }
+}
+
+/// Friction at rows of steady slip, away from reversals and from what smoothing reaches of them: of the nominal model,
+/// and of the columns of friction.
+fn slip(motion: &Motion, parameters: [f64; 3], columns: &[Vec<f64>], candidates: &[Candidate]) -> Slip {
+    let mut friction = vec![false; columns.len()];
+    friction[1..3].fill(true);
+    for candidate in candidates.iter().filter(|candidate| candidate.shape.brakes()) {
+        candidate.columns.iter().for_each(|&column| friction[column] = true);
+    }
+    let thin = (motion.rows.len() / SLIP_ROWS).max(1);
+    let steady = |place: &usize| columns[2][*place].abs() > STEADY;
+    let rows = (0..motion.rows.len()).step_by(thin).filter(steady);
+    let mut slip = Slip { rows: rows.map(|place| (place, columns[2][place].signum())).collect(), ..Slip::default() };
+    let [viscous, coulomb] = [slip.along(&columns[1]), slip.along(&columns[2])];
+    slip.nominal = viscous.iter().zip(&coulomb).map(|(v, s)| parameters[1] * v + parameters[2] * s).collect();
+    slip.columns = columns
+        .iter()
+        .zip(&friction)
+        .map(|(column, friction)| if *friction { slip.along(column) } else { Vec::new() })
+        .collect();
+    slip
+}
+
+/// Shifts of the nominal parameters that are none.
+fn within(model: &AxisModel, parameters: [f64; 3]) -> Vec<f64> {
+    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
+    tolerance.iter().zip(parameters).map(|(tolerance, parameter)| BEYOND * tolerance * parameter).collect()
 }
 
 /// Rows over which a residual is correlated.

@@ -34,6 +34,10 @@ const SAME: f64 = 0.02;
 const UNRELATED: f64 = 0.7;
 /// Rows by which the rate may be late: half a row belongs to any difference of two.
 const LATE: f64 = 0.8;
+/// Standard errors by which it must be more than that, parts of the log that tell them, least smoothing [rows].
+const SURE: f64 = 3.0;
+const PARTS: usize = 8;
+const LEAST_SIGMA: f64 = 3.0;
 /// Rows to either side in which a shift is looked for.
 const SHIFT: i32 = 12;
 
@@ -98,6 +102,39 @@ fn looks_like(factor: f64) -> String {
     format!("{sign}no known ratio")
 }
 
+/// Smoothing that leaves the motion and little of the noise: that of the balance, 3 rows at least.
+fn in_band(log: &AxisLog, model: &AxisModel) -> f64 {
+    let widest = [MotionFrom::Position, MotionFrom::Velocity].map(|from| Motion::new(log, model, from, 1.0, NARROW));
+    let sigma = widest.map(|motion| motion.whole_sigma());
+    sigma[0].min(sigma[1]).max(LEAST_SIGMA)
+}
+
+/// Standard error of a lateness [rows], from what eight parts of the log say of it by themselves:
+///
+/// ```text
+/// late - late_of_all = -sum (b/slope - a) da / sum da^2
+/// ```
+fn lateness_error(a: &[f64], b: &[f64], both: &Follows, log: &AxisLog) -> f64 {
+    let mut earlier = b.to_vec();
+    advance(&mut earlier, both.late_rows);
+    let part = (a.len() / PARTS).max(3);
+    let span = SHIFT.unsigned_abs() as usize + 1;
+    let own: Vec<f64> = (0..PARTS)
+        .map(|place| {
+            let (mut with, mut square) = (0.0, 1e-300);
+            let rows = (place * part).max(span)..((place + 1) * part).min(a.len().saturating_sub(span));
+            for k in rows.filter(|k| log.valid[*k]) {
+                let slope = 0.5 * (a[k + 1] - a[k - 1]);
+                with -= (earlier[k] / both.slope - a[k]) * slope;
+                square += slope * slope;
+            }
+            with / square
+        })
+        .collect();
+    let mean = own.iter().sum::<f64>() / own.len() as f64;
+    (own.iter().map(|late| (late - mean).powi(2)).sum::<f64>() / (own.len() * (own.len() - 1)) as f64).sqrt()
+}
+
 /// Takes a signal `rows` earlier.
 pub(super) fn advance(values: &mut [f64], rows: f64) {
     let last = values.len() - 1;
@@ -146,9 +183,9 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
         1e3 / period_ms,
         log.effort.len() as f64 * log.period_s
     ));
-    let sigma = 3.0;
     let mut from = if log.position.is_some() { MotionFrom::Position } else { MotionFrom::Velocity };
     if let (Some(position), Some(velocity)) = (&log.position, &log.velocity) {
+        let sigma = in_band(log, model);
         let rate = Kernel::new(sigma, 1, log.period_s).apply(position);
         let logged = Kernel::new(sigma, 0, log.period_s).apply(velocity);
         let both = follows(&rate, &logged, &log.valid);
@@ -180,7 +217,7 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
             } else {
                 from = finer(log, model);
             }
-            if both.late_rows > LATE {
+            if both.late_rows - SURE * lateness_error(&rate, &logged, &both, log) > LATE {
                 let late_s = both.late_rows * log.period_s;
                 checked.words.push(format!(
                     "{velocity_name} is {:.1} ms late: a filter, a difference over several rows, or an older sample",

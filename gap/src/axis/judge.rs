@@ -6,17 +6,18 @@ use super::balance::{Balance, nominal};
 use super::library::{NOMINAL, Shape};
 use super::motion::Motion;
 use super::regress::Draws;
-use super::search::{LEAST_OF_REST, LEAST_SHARE, Set};
+use super::search::{LEAST_OF_REST, Set};
 use crate::judge::Verdict;
 
 /// Draws of the bootstrap.
 const DRAWS: usize = 200;
 /// A nominal parameter is an effect from this many tolerances on.
-const BEYOND: f64 = 1.15;
+pub(super) const BEYOND: f64 = 1.15;
 /// Share of the gap that may be left over by what explains it.
 const LEFT: f64 = 0.03;
-/// Parameters shift by one factor when they do within this.
-const SAME_FACTOR: f64 = 0.05;
+/// Sets within this share of what is left are not told apart, and what is left counts as this share of all at least.
+const SAME: f64 = 0.05;
+const LEAST_SAME: f64 = 0.05;
 /// Share of the gap that is a trifle.
 const TRIFLE: f64 = 0.01;
 /// A gap is one from this power over the floor on.
@@ -100,8 +101,10 @@ pub(super) fn shrunk(name: String, unit: &str, before: &[f64], after: &[f64], co
         let rows: f64 = counts.iter().zip(times).map(|(c, t)| c * t).sum::<f64>().max(1.0);
         let (before, after) = (sum(before) / rows, sum(after) / rows);
         // what is below the floor is noise: no gap is closed there
-        let square = floor.powi(2).min(before).min(after);
-        (before.sqrt(), after.sqrt(), 100.0 * (1.0 - (after - square) / (before - square).max(1e-300)))
+        let noise = floor.powi(2).min(after);
+        // an effort within the noise has no gap to close
+        let gone = if before > floor.powi(2).max(1e-300) { 1.0 - (after - noise) / (before - noise) } else { 0.0 };
+        (before.sqrt(), after.sqrt(), 100.0 * gone)
     };
     let all: Vec<f64> = vec![1.0; counts.len()];
     let (whole_before, whole_after, reduction_percent) = closed(&all);
@@ -129,9 +132,13 @@ pub(super) fn by_block(values: &[f64], motion: &Motion) -> Vec<f64> {
 }
 
 /// Nominal parameters beyond what is known of them; all of them by one factor are one effect.
-fn beyond(model: &AxisModel, shifts: [f64; 3], errors: [f64; 3]) -> Vec<Shape> {
+fn beyond(balance: &Balance, model: &AxisModel, shifts: [f64; 3], errors: [f64; 3]) -> Vec<Shape> {
     let base = nominal(model);
-    let outside: Vec<usize> = (0..3).filter(|&index| !within(model, index, shifts[index], errors[index])).collect();
+    // and worth the price of an effect
+    let grams = &balance.problem.grams;
+    let worth = |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
+    let outside: Vec<usize> =
+        (0..3).filter(|&index| worth(index) && !within(model, index, shifts[index], errors[index])).collect();
     let known: Vec<usize> = (0..3).filter(|&index| base[index] > 0.0).collect();
     if outside.len() > 1
         && outside.iter().all(|index| known.contains(index))
@@ -140,9 +147,7 @@ fn beyond(model: &AxisModel, shifts: [f64; 3], errors: [f64; 3]) -> Vec<Shape> {
         let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
         let factors: Vec<(f64, f64)> = known
             .iter()
-            .map(|&i| {
-                (shifts[i] / base[i], tolerance[i].min(SAME_FACTOR).powi(2) + (2.0 * errors[i] / base[i]).powi(2))
-            })
+            .map(|&i| (shifts[i] / base[i], tolerance[i].powi(2) + (2.0 * errors[i] / base[i]).powi(2)))
             .collect();
         let weight: f64 = factors.iter().map(|(_, variance)| 1.0 / variance).sum();
         let mean = factors.iter().map(|(factor, variance)| factor / variance).sum::<f64>() / weight;
@@ -161,7 +166,7 @@ fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> Vec<String>
     let mut names: Vec<String> = shapes
         .filter(|shape| !NOMINAL.contains(shape))
         .map(|shape| label(shape, &balance.motion))
-        .chain(beyond(model, shifts, [0.0; 3]).iter().map(|shape| shape.effect().to_owned()))
+        .chain(beyond(balance, model, shifts, balance.of_noise()).iter().map(|shape| shape.effect().to_owned()))
         .collect();
     names.sort();
     names.dedup();
@@ -216,7 +221,8 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let shifted: Vec<Vec<f64>> =
         drawn.iter().map(|d: &Vec<f64>| balance.shifts(&best.members, &columns, d).to_vec()).collect();
     let errors = [0, 1, 2].map(|index| deviation(&shifted, index));
-    let outside = beyond(model, shifts, errors);
+    let unsure: [f64; 3] = std::array::from_fn(|index| errors[index] + balance.of_noise()[index]);
+    let outside = beyond(balance, model, shifts, unsure);
     for (place, &member) in best.members.iter().enumerate() {
         // what frees a parameter is told as the parameter
         if NOMINAL.contains(&balance.problem.candidates[member].shape) {
@@ -235,7 +241,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let gone = (shrunk.reduction_percent / 100.0).clamp(0.0, 1.0);
     let marginal = |effect: &str| -> f64 {
         let with = ranking.iter().filter(|set| set.effects.iter().any(|name| name == effect));
-        with.map(|set| set.probability).sum::<f64>().clamp(0.0, 1.0)
+        with.map(|set| set.probability).fold(0.0, |sum, p| sum + p).clamp(0.0, 1.0)
     };
     let mut found: Vec<Found> = Vec::new();
     for (place, &member) in best.members.iter().enumerate() {
@@ -383,7 +389,15 @@ pub(super) fn parameters(
         Shape::Quadratic => vec![amplitude("coefficient", format!("{effort} s2/{length}2"))],
         Shape::ViscousCurve { .. } => vec![amplitude("coefficient", format!("{effort} (s/{length})^exponent"))],
         Shape::ViscousDrift { .. } => vec![amplitude("change", unit(1))],
-        Shape::Spring | Shape::FrictionTaper => vec![amplitude("stiffness", unit(0))],
+        Shape::Spring => {
+            let slack: Vec<Vec<f64>> = samples.iter().map(|s| vec![-s[1] / s[0]]).collect();
+            let middle = motion.q.iter().sum::<f64>() / motion.q.len().max(1) as f64;
+            vec![
+                amplitude("stiffness", unit(0)),
+                new("neutral", middle - own[1] / own[0], deviation(&slack, 0), length.to_owned()),
+            ]
+        }
+        Shape::FrictionTaper => vec![amplitude("stiffness", unit(0))],
         Shape::Flexible => vec![amplitude("coefficient", unit(4))],
         Shape::Backlash { .. } => vec![
             amplitude("inertia_unloaded", unit(2)),
@@ -429,22 +443,29 @@ fn rank(balance: &Balance, best: &Set, times: &[Vec<f64>], shrunk: &Shrunk, mode
         }
     }
     let rows: f64 = balance.problem.grams.counts.iter().sum::<f64>().max(1.0);
-    let gap = (balance.problem.set(Vec::new()).square() - balance.problem.floor_square).max(0.0);
+    let floor_square = balance.problem.floor_square;
     // an effect more must earn half of what it must in the search
-    let each = 0.5 * (LEAST_SHARE * gap).max(LEAST_OF_REST * (best.square() - balance.problem.floor_square).max(0.0));
-    let cost = |set: &Set| each * set.members.len() as f64;
+    let each = balance.problem.price().max(0.5 * LEAST_OF_REST * (best.square() - floor_square).max(0.0));
+    let cost = |set: &Set| each * balance.problem.effects(&set.members) as f64;
+    // sets that differ in a small share of what is left, which no effect explains, are not told apart by it
+    let same = SAME * (best.square() - floor_square).max(LEAST_SAME * best.square()).max(1e-300);
+    let costs: Vec<Vec<f64>> = kinds.iter().map(|(_, sets)| sets.iter().map(cost).collect()).collect();
     let mut wins = vec![0.0; kinds.len()];
     for times in times {
         let drawn: f64 = balance.problem.grams.counts.iter().zip(times).map(|(c, t)| c * t).sum::<f64>().max(1.0);
-        let score = |set: &Set| {
+        let score = |(set, cost): (&Set, &f64)| {
             let square: f64 = set.held_out.iter().zip(times).map(|(s, t)| s * t).sum();
-            square * rows / drawn + cost(set)
+            square * rows / drawn + cost
         };
-        let of = |sets: &[Set]| sets.iter().map(score).fold(f64::MAX, f64::min);
-        let winner = (0..kinds.len()).min_by(|&a, &b| of(&kinds[a].1).total_cmp(&of(&kinds[b].1)));
-        if let Some(winner) = winner {
-            wins[winner] += 1.0;
-        }
+        let scores: Vec<f64> = kinds
+            .iter()
+            .zip(&costs)
+            .map(|((_, sets), costs)| sets.iter().zip(costs).map(score).fold(f64::MAX, f64::min))
+            .collect();
+        let least = scores.iter().copied().fold(f64::MAX, f64::min);
+        let weights: Vec<f64> = scores.iter().map(|score| (-(score - least) / same).exp()).collect();
+        let sum: f64 = weights.iter().sum();
+        wins.iter_mut().zip(&weights).for_each(|(wins, weight)| *wins += weight / sum);
     }
     let left = (shrunk.after.powi(2) - shrunk.noise_floor.powi(2)).max(0.0)
         / (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(1e-300);
@@ -454,7 +475,7 @@ fn rank(balance: &Balance, best: &Set, times: &[Vec<f64>], shrunk: &Shrunk, mode
     let mut ranking: Vec<Ranked> = kinds
         .into_iter()
         .zip(wins)
-        .filter(|(_, wins)| *wins > 0.0)
+        .filter(|(_, wins)| *wins > 0.5)
         .map(|((effects, _), wins)| Ranked { effects, probability: wins / total * (1.0 - unknown) })
         .collect();
     ranking.sort_by(|a, b| b.probability.total_cmp(&a.probability));

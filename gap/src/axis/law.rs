@@ -14,7 +14,7 @@ use super::judge::{Found, Parameter, Shrunk, deviation, parameters, shrunk};
 use super::library::{Shape, rms};
 use super::motion::Motion;
 use super::regress::{Draws, Grams};
-use super::search::{Candidate, Problem};
+use super::search::{Candidate, Problem, Slip};
 use super::table::AxisLog;
 
 /// What the law shows.
@@ -29,6 +29,10 @@ pub(super) struct Law {
 const KEPT_WAVES: usize = 8;
 /// A gain is another one from this many tolerances on.
 const BEYOND: f64 = 1.15;
+/// An output is at its limit from this share of it on.
+const AT_LIMIT: f64 = 0.995;
+/// Rows that a law must be held against, at least.
+const LEAST_ROWS: usize = 200;
 /// Share of the output below which a law is as good as any.
 const NOISE: f64 = 1e-3;
 
@@ -50,6 +54,22 @@ fn errors(log: &AxisLog, controller: &Controller, m: &Motion) -> Option<Vec<(&'s
         errors.push(("velocity_gain", controller.velocity_gain, error));
     }
     (!errors.is_empty()).then_some(errors)
+}
+
+/// Leaves out the rows at which the output is at its limit, with what smoothing reaches: no law holds there.
+fn free_rows(m: &mut Motion, output: &[f64], model: &AxisModel, controller: &Controller) {
+    let limit = match controller.output {
+        Output::Command => controller.limit,
+        Output::Effort => controller.limit.or(model.effort_limit),
+    };
+    let Some(limit) = limit else { return };
+    let mut free = vec![true; output.len()];
+    let reach = m.whole.half();
+    for (row, _) in output.iter().enumerate().filter(|(_, value)| value.abs() >= AT_LIMIT * limit) {
+        free[row.saturating_sub(reach)..(row + reach + 1).min(output.len())].fill(false);
+    }
+    let kept = m.rows.iter().zip(&m.block).filter(|(row, _)| free[**row]);
+    (m.rows, m.block) = kept.map(|(row, block)| (*row, *block)).unzip();
 }
 
 /// Waves over the position that stand out of a residual while a channel is on.
@@ -90,18 +110,22 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     let columns = &model.columns;
     let lost = columns.position_reference.is_some() && log.position_reference.is_none()
         || columns.velocity_reference.is_some() && log.velocity_reference.is_none();
-    let Some(errors) = errors(log, controller, motion).filter(|_| !lost) else {
-        let words =
-            vec!["the control law is known, but not what it follows: its reference is not in this file".to_owned()];
-        return Law { words, ..Law::default() };
-    };
     let (output, unit) = match (controller.output, &log.command, &model.columns.command) {
         (Output::Command, Some(command), Some(source)) => (command, source.unit.clone()),
         (Output::Effort, ..) => (&log.effort, model.effort_unit.clone()),
         _ => return Law::default(),
     };
-    let given = motion.raw(output);
     let mut m = motion.clone();
+    free_rows(&mut m, output, model, controller);
+    if m.rows.len() < LEAST_ROWS {
+        return Law::default();
+    }
+    let Some(errors) = errors(log, controller, &m).filter(|_| !lost) else {
+        let words =
+            vec!["the control law is known, but not what it follows: its reference is not in this file".to_owned()];
+        return Law { words, ..Law::default() };
+    };
+    let given = m.raw(output);
     let rows = given.len();
     let said: Vec<f64> = (0..rows).map(|row| errors.iter().map(|(_, gain, error)| gain * error[row]).sum()).collect();
     let target: Vec<f64> = given.iter().zip(&said).map(|(u, law)| u - law).collect();
@@ -143,6 +167,8 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         // a load hides nothing here: what it leaves is as well known as it is
         least_share: 0.0,
         nominal: None,
+        slip: Slip::default(),
+        within: errors.iter().map(|(_, gain, _)| BEYOND * controller.tolerance * gain.abs()).collect(),
     };
     let mut problem = problem;
     let mut best = problem.search(Vec::new());

@@ -150,6 +150,16 @@ impl Shape {
         }
     }
 
+    /// Whether it must brake wherever the axis slips: pre-sliding springs back.
+    pub(super) fn brakes(&self) -> bool {
+        self.block() == "friction" && !matches!(self, Self::Presliding { .. })
+    }
+
+    /// Whether it stands for another effect, too: a spring has its neutral point, and so an offset.
+    pub(super) fn holds(&self, other: &Self) -> bool {
+        matches!((self, other), (Self::Spring, Self::Constant))
+    }
+
     /// Whether several of it, each with another number, may act at once.
     pub(super) fn many(&self) -> bool {
         matches!(
@@ -168,7 +178,9 @@ impl Shape {
     pub(super) fn possible(&self, amplitudes: &[f64], level: f64) -> bool {
         match self {
             Self::Stribeck { .. } => amplitudes[0] > 0.0 && amplitudes[0] < 3.0 * level.abs(),
-            Self::Quadratic
+            // what falls with the rate at all rates is the loop's law; at slow ones it is Stribeck's
+            Self::ViscousCurve { .. }
+            | Self::Quadratic
             | Self::LoadDependence
             | Self::Spring
             | Self::Hysteresis { .. }
@@ -236,7 +248,8 @@ impl Shape {
             Self::Coulomb => vec![m.s.clone()],
             Self::Scale => vec![m.needed.clone()],
             Self::Constant => vec![vec![1.0; m.q.len()]],
-            Self::Asymmetry => vec![by(&|i| m.s[i].abs())],
+            // once it slips it is an offset; rows of rest, which would tell, are not in the balance
+            Self::Asymmetry => vec![vec![1.0; m.q.len()]],
             Self::Stribeck { rate, exponent } => {
                 vec![by(&|i| m.s[i] * (-(m.v[i].abs() / rate).powf(exponent)).exp())]
             }
@@ -252,7 +265,8 @@ impl Shape {
             Self::LoadDependence => vec![by(&|i| m.s[i] * m.needed[i].abs())],
             Self::PositionFriction { wave_number } => waves(wave_number, &|i| m.s[i]),
             Self::FrictionTaper => vec![by(&|i| m.s[i] * (m.q[i] - middle))],
-            Self::Spring => vec![by(&|i| m.q[i] - middle)],
+            // where it is slack is not known
+            Self::Spring => vec![by(&|i| m.q[i] - middle), vec![1.0; m.q.len()]],
             Self::Hysteresis { width } => vec![play_state(&m.q, width)],
             Self::Ripple { wave_number } => waves(wave_number, &|_| 1.0),
             Self::MotorRipple { wave_number } => waves(wave_number, &|i| m.needed[i]),
@@ -347,7 +361,7 @@ pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
             shapes.push(Shape::Backlash { width: length });
         }
     }
-    for share in [0.03, 0.1, 0.3, 1.0] {
+    for share in [0.03, 0.1, 0.3] {
         shapes.push(Shape::Hysteresis { width: share * m.travel });
     }
     for share in [0.05, 0.15, 0.4, 1.0] {

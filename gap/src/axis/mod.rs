@@ -5,6 +5,7 @@
 mod balance;
 mod columns;
 mod diagnose;
+mod experiment;
 mod judge;
 mod law;
 mod library;

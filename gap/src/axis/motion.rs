@@ -17,7 +17,7 @@ pub(super) const WIDE: f64 = 0.04;
 /// Blocks of time: what is held out, and what the bootstrap draws.
 pub(super) const BLOCKS: usize = 32;
 /// An axis is at rest when it stays slow this long [s].
-const DWELL_S: f64 = 0.06;
+const DWELL_S: f64 = 0.015;
 /// Rows of the balance at most.
 const MOST_ROWS: usize = 12_000;
 /// Below this share of moving rows the axis is taken to stand.
@@ -67,6 +67,9 @@ pub(super) struct Motion {
     pub(super) position_noise: f64,
     /// Noise that motion and effort bring into the balance.
     pub(super) floor: f64,
+    /// Noise of rate and acceleration on the grid.
+    pub(super) rate_noise: f64,
+    pub(super) acceleration_noise: f64,
     /// Share of the rows at rest; whether the axis stands all the time.
     pub(super) at_rest: f64,
     pub(super) stands: bool,
@@ -209,6 +212,8 @@ impl Motion {
             travel: high - low,
             position_noise,
             floor,
+            rate_noise,
+            acceleration_noise: noise_at(band_hz),
             at_rest,
             stands,
         }
@@ -217,6 +222,19 @@ impl Motion {
     /// Standard deviation of the whole smoothing [rows].
     pub(super) fn whole_sigma(&self) -> f64 {
         HALF_POWER / self.band_hz / self.period_s * 2.0_f64.sqrt()
+    }
+
+    /// Noise of a derivative of the position, smoothed with everything. White noise of deviation n at rows of period T,
+    /// through a Gaussian of standard deviation S:
+    ///
+    /// ```text
+    /// variance = n^2 T gamma(k + 1/2)/(2 pi S^(2k + 1))        k: order, of a logged rate one less
+    /// ```
+    pub(super) fn derivative_noise(&self, order: u32) -> f64 {
+        let order = if self.from == MotionFrom::Velocity { order - 1 } else { order };
+        let sigma_s = self.whole_sigma() * self.period_s;
+        let gamma = (0..order).fold(std::f64::consts::PI.sqrt(), |gamma, k| gamma * (f64::from(k) + 0.5));
+        self.position_noise * (self.period_s * gamma / (TAU * sigma_s.powi(2 * order.cast_signed() + 1))).sqrt()
     }
 
     /// A smoothed signal on the grid of the balance.

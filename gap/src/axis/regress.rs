@@ -72,6 +72,12 @@ impl Grams {
         square.max(0.0)
     }
 
+    /// Square of the regressand.
+    pub(super) fn square_of_target(&self) -> f64 {
+        let last = self.total.nrows() - 1;
+        self.total[(last, last)]
+    }
+
     /// Amplitudes from all blocks.
     pub(super) fn fit(&self, set: &[usize]) -> Vec<f64> {
         self.solve(&self.total, set).map_or_else(|| vec![0.0; set.len()], |s| s.iter().copied().collect())

@@ -5,8 +5,9 @@ use std::fmt::Write;
 use serde_json::{Value, json as object};
 
 use super::diagnose::AxisDiagnosis;
+use super::experiment::experiment;
 use super::judge::Found;
-use crate::judge::{Verdict, experiment};
+use crate::judge::Verdict;
 use crate::report::page::{Line, SCRIPT, STYLE, escaped, plot};
 
 /// The report of one log; `log` and `model` are their names.

@@ -27,6 +27,10 @@ pub(super) struct Problem {
     pub(super) least_share: f64,
     /// Nominal parameters, where the base columns are they.
     pub(super) nominal: Option<[f64; 3]>,
+    /// Where friction must brake.
+    pub(super) slip: Slip,
+    /// How far each base column's amplitude may go before that is an effect.
+    pub(super) within: Vec<f64>,
 }
 
 /// An effect must take this share of the gap that was there, and this share of what is left.
@@ -43,6 +47,40 @@ const MOST: usize = 10;
 const ASYMMETRIC: f64 = 1.03;
 /// Candidates of which all pairs are tried.
 const PAIRED: usize = 48;
+
+/// Rows of steady slip, and what each column adds to friction there, along the motion; other columns stand empty.
+#[derive(Debug, Default)]
+pub(super) struct Slip {
+    /// Rows of the grid, and the direction there.
+    pub(super) rows: Vec<(usize, f64)>,
+    /// Friction of the nominal model.
+    pub(super) nominal: Vec<f64>,
+    pub(super) columns: Vec<Vec<f64>>,
+}
+
+/// Share of the rows of slip at which fitted friction may drive.
+const MAY_DRIVE: f64 = 0.02;
+
+impl Slip {
+    /// A column along the motion.
+    pub(super) fn along(&self, column: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&(place, direction)| column[place] * direction).collect()
+    }
+
+    /// Whether friction brakes. What drives is the loop's own answer, for its effort falls with the rate:
+    ///
+    /// ```text
+    /// friction(q, v, t) sgn v >= 0
+    /// ```
+    fn brakes(&self, columns: &[usize], amplitudes: &[f64]) -> bool {
+        let mut friction = self.nominal.clone();
+        for (&column, amplitude) in columns.iter().zip(amplitudes) {
+            friction.iter_mut().zip(&self.columns[column]).for_each(|(sum, value)| *sum += amplitude * value);
+        }
+        let drives = friction.iter().filter(|along| **along < 0.0).count();
+        drives as f64 <= MAY_DRIVE * friction.len() as f64
+    }
+}
 
 /// A set with its errors on blocks held out.
 #[derive(Debug, Clone)]
@@ -92,6 +130,9 @@ impl Problem {
                 return false;
             }
             level = total(2);
+            if !self.slip.brakes(columns, &fit) {
+                return false;
+            }
         }
         members.iter().all(|&member| {
             let own: Vec<f64> = self.candidates[member].columns.iter().map(|&column| at(column)).collect();
@@ -105,7 +146,7 @@ impl Problem {
         members.iter().all(|&member| {
             let other = &self.candidates[member].shape;
             if other.effect() != shape.effect() {
-                return true;
+                return !other.holds(shape) && !shape.holds(other);
             }
             let apart = || {
                 let (a, b) = (other.numbers(), shape.numbers());
@@ -136,7 +177,7 @@ impl Problem {
             best = self.exchanged(best, &all);
             if best.members.len() < MOST
                 && let Some(longer) = self.extended(&best, &all)
-                && self.worth(&best, &longer, gap, 1.0)
+                && (self.worth(&best, &longer, gap, 1.0) || self.simpler(&longer, &best))
             {
                 best = longer;
             }
@@ -169,10 +210,42 @@ impl Problem {
         rest > 0.0 && gain > effects * least && mean > LEAST_T * error
     }
 
-    /// What sets are compared by: of an offset and an asymmetry that the log cannot tell apart, the offset.
+    /// Effects that a set stands for: its members, and base columns beyond what is known of them.
+    pub(super) fn effects(&self, members: &[usize]) -> usize {
+        let columns = self.columns(members);
+        let fit = self.grams.fit(&columns);
+        let freed = |index: usize| {
+            let own = members.iter().find(|&&m| self.nominal.is_some() && self.candidates[m].shape == NOMINAL[index]);
+            let place = own.and_then(|&m| columns.iter().position(|c| *c == self.candidates[m].columns[0]));
+            place.map_or(0.0, |place| fit[place])
+        };
+        let tapers = members.iter().any(|&m| self.candidates[m].shape == Shape::FrictionTaper);
+        let beyond = self.within.iter().enumerate().filter(|(index, limit)| {
+            let level = tapers && self.nominal.is_some() && *index == 2;
+            !level && (fit[*index] + freed(*index)).abs() > **limit
+        });
+        let named = members.iter().filter(|&&m| !NOMINAL.contains(&self.candidates[m].shape));
+        // a spring has two amplitudes, an offset one
+        let springs = members.iter().filter(|&&m| self.candidates[m].shape == Shape::Spring);
+        beyond.count() + named.count() + springs.count()
+    }
+
+    /// Squared error that an effect must be worth, whatever else.
+    pub(super) fn price(&self) -> f64 {
+        LEAST_SHARE * (self.grams.square_of_target() - self.floor_square).max(0.0)
+    }
+
+    /// What sets are compared by: their error and their effects; of an offset and an asymmetry that the log cannot tell
+    /// apart, the offset.
     fn key(&self, set: &Set) -> f64 {
+        let priced = self.price() * self.effects(&set.members) as f64;
         let asymmetric = set.members.iter().any(|&member| self.candidates[member].shape == Shape::Asymmetry);
-        set.square() * if asymmetric { ASYMMETRIC } else { 1.0 }
+        priced + set.square() * if asymmetric { ASYMMETRIC } else { 1.0 }
+    }
+
+    /// Whether a longer set says the same with fewer effects, for parameters come back to what is known of them.
+    fn simpler(&self, longer: &Set, shorter: &Set) -> bool {
+        self.effects(&longer.members) < self.effects(&shorter.members) && self.key(longer) < self.key(shorter)
     }
 
     fn best_of(&self, sets: Vec<Vec<usize>>) -> Option<Set> {
@@ -234,7 +307,9 @@ impl Problem {
                 members
             });
             match self.best_of(shorter.collect()) {
-                Some(shorter) if !self.worth(&shorter, &best, gap, 1.0) => best = shorter,
+                Some(shorter) if !self.worth(&shorter, &best, gap, 1.0) && !self.simpler(&best, &shorter) => {
+                    best = shorter;
+                }
                 _ => break,
             }
         }
