@@ -1,12 +1,10 @@
 //! Sensitivities of the nominal prediction: to where it begins, to the nominal parameters, to the candidates.
 
-use rayon::prelude::*;
-
 use super::Columns;
 use super::signals::{Signals, difference, peak};
 use crate::library::{Candidate, Nuisance, apply};
 use crate::record::{Record, Signal};
-use crate::simulate::{Begin, Physics, Prediction, predict};
+use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
 
 /// Places of the beginning that are unknown, and their standard deviations.
 const STATE_SIGMA: [f64; 10] = [0.02, 2e-4, 0.1, 0.1, 3.0, 3.0, 3.0, 1e-2, 1e-2, 1.0];
@@ -39,20 +37,20 @@ impl Draft<'_> {
         let states: Vec<usize> =
             (0..10).filter(|&state| state != 9 || self.record.channel(Signal::GimbalAngle).is_some()).collect();
         columns.begin = states.len();
-        let mut all: Vec<Signals> = states.par_iter().map(|&state| self.begin_column(state)).collect();
+        let mut variants: Vec<(Variant, f64)> = states.iter().map(|&state| self.begun(state)).collect();
         sigma.extend(states.iter().map(|&state| self.state_sigma(state)));
-        all.par_extend(nuisances.par_iter().map(|nuisance| {
+        variants.extend(nuisances.iter().map(|nuisance| {
             let mut physics = self.base.clone();
             nuisance.shift(&mut physics, nuisance.step);
-            self.difference(&physics, nuisance.step)
+            (self.variant(physics), nuisance.step)
         }));
         sigma.extend(nuisances.iter().map(|nuisance| nuisance.sigma));
-        let probes: Vec<Vec<Signals>> = candidates.par_iter().map(|candidate| self.probes(candidate)).collect();
-        for (candidate, probes) in candidates.iter().zip(probes) {
-            columns.first.push(all.len());
-            sigma.extend(candidate.prior.iter().take(probes.len()).map(|(_, sigma)| *sigma));
-            all.extend(probes);
+        for candidate in candidates {
+            columns.first.push(variants.len());
+            sigma.extend(candidate.prior.iter().take(candidate.probes.len()).map(|(_, sigma)| *sigma));
+            variants.extend(self.probes(candidate));
         }
+        let all = self.differences(variants);
         (columns, all, sigma)
     }
 
@@ -68,32 +66,38 @@ impl Draft<'_> {
         2.0 * ((1.0 - lead_s / lag_s).abs() + SLOW_UNKNOWN) * peak(&self.nominal.motor_torque_nm) / lag_s
     }
 
-    fn begin_column(&self, state: usize) -> Signals {
+    /// Begun elsewhere, and by how much.
+    fn begun(&self, state: usize) -> (Variant<'static>, f64) {
         let step = STATE_STEP * self.state_sigma(state);
-        let mut begin = self.begin.clone();
-        begin.state[state] += step;
+        let mut variant = self.variant(self.base.clone());
+        variant.begin.state[state] += step;
         // it dies away
-        let rows = if state == 9 { usize::MAX } else { remembered_rows(self.record) };
-        let moved = predict(self.base, &self.record.inputs, &begin, rows);
-        difference(self.record, &moved, self.nominal, step)
+        if state != 9 {
+            variant.rows = remembered_rows(self.record);
+        }
+        (variant, step)
     }
 
-    fn difference(&self, physics: &Physics, step: f64) -> Signals {
-        let moved = predict(physics, &self.record.inputs, self.begin, usize::MAX);
-        difference(self.record, &moved, self.nominal, step)
+    fn variant(&self, physics: Physics) -> Variant<'static> {
+        Variant { physics, begin: self.begin.clone(), rate_radps: None, rows: usize::MAX }
     }
 
-    /// Columns of a candidate.
-    pub(crate) fn probes(&self, candidate: &Candidate) -> Vec<Signals> {
-        candidate
-            .probes
-            .iter()
-            .map(|(values, divisor)| {
-                let mut physics = self.base.clone();
-                apply(candidate.effect, values, &mut physics);
-                self.difference(&physics, *divisor)
-            })
-            .collect()
+    /// A candidate's probes, and what their differences are divided by.
+    pub(crate) fn probes(&self, candidate: &Candidate) -> Vec<(Variant<'static>, f64)> {
+        let one = |(values, divisor): &(Vec<f64>, f64)| {
+            let mut physics = self.base.clone();
+            apply(candidate.effect, values, &mut physics);
+            (self.variant(physics), *divisor)
+        };
+        candidate.probes.iter().map(one).collect()
+    }
+
+    /// What variants change, over their steps.
+    pub(crate) fn differences(&self, variants: Vec<(Variant, f64)>) -> Vec<Signals> {
+        let (variants, steps): (Vec<Variant>, Vec<f64>) = variants.into_iter().unzip();
+        predict_each(&variants, &self.record.inputs, |index, moved| {
+            difference(self.record, &moved, self.nominal, steps[index])
+        })
     }
 }
 

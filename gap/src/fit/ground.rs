@@ -105,13 +105,14 @@ impl<'a> Ground<'a> {
         let path = Path::new(&whitener, &self.impulse, impulse_nm(&self.base, self.record), period_s);
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
-        let mut more: Vec<Signals> = Vec::new();
+        let mut more = Vec::new();
         for candidate in self.ripples(&path, &whitener, &rest) {
             columns.first.push(self.raw.len() + more.len());
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             more.extend(self.draft().probes(&candidate));
             candidates.push(candidate);
         }
+        let mut more = self.draft().differences(more);
         scale(&mut more, &self.over_noise);
         let problem = Problem {
             record: self.record,

@@ -7,7 +7,7 @@ use super::pull::Pull;
 use super::signals::{difference, residual};
 use super::{Problem, Set};
 use crate::library::{Nuisance, apply};
-use crate::simulate::{Begin, Physics, Prediction, predict};
+use crate::simulate::{Begin, Physics, Prediction, Variant, predict, predict_each};
 
 /// Step of a sensitivity to a value, in its logarithm or over its size.
 const STEP: f64 = 2e-3;
@@ -106,23 +106,31 @@ impl<'a> Hypothesis<'a> {
         begin
     }
 
-    /// Some rows of the prediction at a point.
-    pub(crate) fn predict(&self, point: &Point, rows: usize) -> Prediction {
-        predict(&self.physics(point), &self.problem.record.inputs, &self.begin(point), rows)
+    /// The prediction at a point.
+    pub(crate) fn predict(&self, point: &Point) -> Prediction {
+        predict(&self.physics(point), &self.problem.record.inputs, &self.begin(point), usize::MAX)
+    }
+
+    /// Some rows of it, as one of many.
+    pub(crate) fn variant(&self, point: &Point, rows: usize) -> Variant<'static> {
+        Variant { physics: self.physics(point), begin: self.begin(point), rate_radps: None, rows }
     }
 
     /// Prediction and whitened residual at a point.
     pub(crate) fn evaluate(&self, point: &Point) -> Outcome {
-        let prediction = self.predict(point, usize::MAX);
+        let prediction = self.predict(point);
         let residual = self.problem.whiten(residual(self.problem.record, &prediction));
         let square = residual.iter().map(|value| value * value).sum();
         Outcome { prediction, residual, square }
     }
 
-    /// What the prediction changes by from a point to a moved one, whitened, over the step.
-    pub(crate) fn slope(&self, moved: &Point, now: &Prediction, step: f64, rows: usize) -> Vec<f64> {
-        let prediction = self.predict(moved, rows);
-        self.problem.whiten(difference(self.problem.record, &prediction, now, step))
+    /// What the prediction changes by from a point to moved ones, whitened, over the steps.
+    pub(crate) fn slopes(&self, moved: Vec<(Variant, f64)>, now: &Prediction) -> Vec<Vec<f64>> {
+        let (variants, steps): (Vec<Variant>, Vec<f64>) = moved.into_iter().unzip();
+        let record = self.problem.record;
+        predict_each(&variants, &record.inputs, |index, moved| {
+            self.problem.whiten(difference(record, &moved, now, steps[index]))
+        })
     }
 
     /// Sensitivity to every free value.
@@ -136,9 +144,9 @@ impl<'a> Hypothesis<'a> {
             } else {
                 *value += step;
             }
-            self.slope(&moved, now, step, usize::MAX)
+            (self.variant(&moved, usize::MAX), step)
         };
-        self.free.iter().map(of).collect()
+        self.slopes(self.free.iter().map(of).collect(), now)
     }
 
     /// What the priors cost at a point.

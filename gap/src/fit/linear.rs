@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use super::Problem;
 use super::draft::{STATE_STEP, remembered_rows};
@@ -45,9 +44,9 @@ impl<'a> Linear<'a> {
             };
             // what changes at the beginning alone dies away
             let rows = if place < begin.min(PHI) { remembered_rows(problem.record) } else { usize::MAX };
-            hypothesis.slope(&moved, &now.prediction, step, rows)
+            (hypothesis.variant(&moved, rows), step)
         };
-        let columns: Vec<Vec<f64>> = (0..hypothesis.fixed()).into_par_iter().map(column).collect();
+        let columns = hypothesis.slopes((0..hypothesis.fixed()).map(column).collect(), &now.prediction);
         let gram = products(&slices(&columns), &slices(&columns), 0..problem.whitener.rows());
         Self { columns: Cow::Owned(columns), gram }
     }

@@ -41,7 +41,7 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
     let Some(solution) = solve(&gram, &drive, &chosen, &weights) else { return fit.prediction.clone() };
     let mut step = DVector::zeros(begin + n);
     step.rows_mut(begin, n).copy_from(&solution.coefficients);
-    hypothesis.predict(&hypothesis.moved(&fit.point(problem), &step), usize::MAX)
+    hypothesis.predict(&hypothesis.moved(&fit.point(problem), &step))
 }
 
 /// Takes the sensitivities to the nominal parameters where a fit ended.
@@ -64,6 +64,6 @@ pub fn without(problem: &Problem, fit: &Fit, place: usize) -> Vec<f64> {
             point.shifts[nuisance] = 0.0;
         }
     }
-    let prediction = Hypothesis::new(problem, &set, &point.values).predict(&point, usize::MAX);
+    let prediction = Hypothesis::new(problem, &set, &point.values).predict(&point);
     problem.whiten(difference(problem.record, &fit.prediction, &prediction, 1.0))
 }

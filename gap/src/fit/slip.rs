@@ -12,7 +12,7 @@
 
 use super::signals::{Signals, difference, scaled};
 use crate::record::{RateNoise, Record};
-use crate::simulate::{Begin, Inputs, Physics, Prediction, predict};
+use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
 
 /// Most blocks.
 const MOST: usize = 800;
@@ -21,6 +21,8 @@ const BEFORE: usize = 200;
 const AFTER: usize = 1000;
 /// Rate by which a block is moved, over the slip rate.
 const STEP: f64 = 0.02;
+/// Predictions that are held at a time.
+const TOGETHER: usize = 16;
 /// A block that adds less than this to the variance of the noise is none.
 const LEAST: f64 = 1e-3;
 
@@ -60,7 +62,7 @@ impl Slips {
     }
 
     /// From the blocks as each shows after the filter of frequencies.
-    pub(crate) fn new(turning: &Turning, filter: impl Fn(&Signals) -> Vec<f64>) -> Self {
+    pub(crate) fn new(turning: &Turning, filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Self {
         let blocks = turning.blocks();
         let mut slips = Self::default();
         if blocks.is_empty() {
@@ -116,39 +118,61 @@ impl Turning<'_> {
 
     /// Each block's samples after a change of its rate by 1 rad/s, and where they begin; blocks that are far from each other share a
     /// prediction.
-    fn shown(&self, blocks: &[Block], filter: impl Fn(&Signals) -> Vec<f64>) -> Vec<(usize, Vec<f64>)> {
+    fn shown(&self, blocks: &[Block], filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Vec<(usize, Vec<f64>)> {
         let channels = self.record.channels.len();
         let step = STEP * self.base.config.bearing.slip_rate_radps;
+        let inputs = &self.record.inputs;
+        let apart = far_apart(blocks);
         let mut shown = vec![(0, Vec::new()); blocks.len()];
-        let mut left: Vec<usize> = (0..blocks.len()).collect();
-        while !left.is_empty() {
-            let mut next_free = 0;
-            let (now, later): (Vec<usize>, Vec<usize>) = left.into_iter().partition(|&index| {
-                let free = blocks[index].start >= next_free;
-                if free {
-                    next_free = blocks[index].end + BEFORE + AFTER;
-                }
-                free
+        for some in apart.chunks(TOGETHER) {
+            let moved = |group: &Vec<usize>| {
+                let mut rate_radps = inputs.rate_radps.clone();
+                group.iter().flat_map(|&index| blocks[index].clone()).for_each(|k| rate_radps[k] += step);
+                rate_radps
+            };
+            let rates: Vec<Vec<f64>> = some.iter().map(moved).collect();
+            let (physics, begin) = (self.base, self.begin);
+            let variants: Vec<Variant> = rates
+                .iter()
+                .map(|rate_radps| Variant {
+                    physics: physics.clone(),
+                    begin: begin.clone(),
+                    rate_radps: Some(rate_radps),
+                    rows: usize::MAX,
+                })
+                .collect();
+            let pieces = predict_each(&variants, inputs, |group, moved| {
+                let whitened = filter(&scaled(difference(self.record, &moved, self.nominal, step), self.scaled));
+                let piece = |&index: &usize| {
+                    let first = channels * blocks[index].start.saturating_sub(BEFORE);
+                    let last = (channels * (blocks[index].end + AFTER)).min(whitened.len());
+                    (index, (first, whitened[first..last].to_vec()))
+                };
+                some[group].iter().map(piece).collect::<Vec<_>>()
             });
-            let mut inputs = self.record.inputs.clone();
-            for &index in &now {
-                blocks[index].clone().for_each(|k| inputs.rate_radps[k] += step);
-            }
-            let whitened = filter(&self.moved(&inputs, step));
-            for index in now {
-                let first = channels * blocks[index].start.saturating_sub(BEFORE);
-                let last = (channels * (blocks[index].end + AFTER)).min(whitened.len());
-                shown[index] = (first, whitened[first..last].to_vec());
-            }
-            left = later;
+            pieces.into_iter().flatten().for_each(|(index, piece)| shown[index] = piece);
         }
         shown
     }
+}
 
-    fn moved(&self, inputs: &Inputs, step: f64) -> Signals {
-        let moved = predict(self.base, inputs, self.begin, usize::MAX);
-        scaled(difference(self.record, &moved, self.nominal, step), self.scaled)
+/// Blocks, by index, in groups whose members do not show in each other's samples.
+fn far_apart(blocks: &[Block]) -> Vec<Vec<usize>> {
+    let mut groups = Vec::new();
+    let mut left: Vec<usize> = (0..blocks.len()).collect();
+    while !left.is_empty() {
+        let mut next_free = 0;
+        let (now, later): (Vec<usize>, Vec<usize>) = left.into_iter().partition(|&index| {
+            let free = blocks[index].start >= next_free;
+            if free {
+                next_free = blocks[index].end + BEFORE + AFTER;
+            }
+            free
+        });
+        groups.push(now);
+        left = later;
     }
+    groups
 }
 
 /// Runs of rows, in pieces of at most so many.

@@ -1,19 +1,63 @@
 //! One step of the chain, exact for inputs that run along a line.
 
+use std::cell::OnceCell;
+
 use nalgebra::DMatrix;
 
+use super::Physics;
 use super::chain::{Chain, INPUTS};
+use super::lanes::Lanes;
+
+/// Longest full step [s].
+const LONGEST_STEP_S: f64 = 1.2e-3;
+/// Into how many steps a full one is divided.
+pub(super) const DIVISIONS: [u32; 3] = [1, 6, 16];
+
+/// The steps of one prediction.
+#[allow(clippy::struct_field_names, reason = "full steps are one kind of them")]
+pub(super) struct Steps<'a, const N: usize> {
+    pub(super) physics: &'a Physics,
+    period_s: f64,
+    /// Full steps a row.
+    pub(super) full_steps: u32,
+    /// By division.
+    pub(super) free: [Step<N, 1>; 3],
+    held: OnceCell<[Step<N, 1>; 3]>,
+    /// The row that gives the motor's command.
+    pub(super) command: [f64; N],
+}
+
+impl<'a, const N: usize> Steps<'a, N> {
+    pub(super) fn new(physics: &'a Physics, period_s: f64) -> Self {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few")]
+        let full_steps = (period_s / LONGEST_STEP_S).ceil().max(1.0) as u32;
+        let chain = Chain::new(physics, false);
+        let command = std::array::from_fn(|state| chain.command[state]);
+        let free = Self::divided(&chain, period_s / f64::from(full_steps));
+        Self { physics, period_s, full_steps, free, held: OnceCell::new(), command }
+    }
+
+    /// The same with the float on a stop.
+    pub(super) fn held(&self) -> &[Step<N, 1>; 3] {
+        let full_s = self.period_s / f64::from(self.full_steps);
+        self.held.get_or_init(|| Self::divided(&Chain::new(self.physics, true), full_s))
+    }
+
+    fn divided(chain: &Chain, full_s: f64) -> [Step<N, 1>; 3] {
+        DIVISIONS.map(|parts| Step::new(chain, full_s / f64::from(parts)))
+    }
+}
 
 /// `x(h) = A x + B0 u(0) + B1 u(h)`, column by column.
 #[derive(Debug, Clone)]
-pub(crate) struct Step<const N: usize> {
-    pub(crate) state: [[f64; N]; N],
-    pub(crate) start: [[f64; N]; INPUTS],
-    pub(crate) end: [[f64; N]; INPUTS],
+pub(super) struct Step<const N: usize, const L: usize> {
+    pub(super) state: [[Lanes<L>; N]; N],
+    pub(super) start: [[Lanes<L>; N]; INPUTS],
+    pub(super) end: [[Lanes<L>; N]; INPUTS],
 }
 
-impl<const N: usize> Step<N> {
-    pub(crate) fn new(chain: &Chain, step_s: f64) -> Self {
+impl<const N: usize> Step<N, 1> {
+    pub(super) fn new(chain: &Chain, step_s: f64) -> Self {
         // d/dt (x, u, h u') = (A x + B u, u' h / h, 0)
         let mut block = DMatrix::zeros(N + 2 * INPUTS, N + 2 * INPUTS);
         block.view_mut((0, 0), (N, N)).copy_from(&(step_s * &chain.slope));
@@ -22,26 +66,45 @@ impl<const N: usize> Step<N> {
             block[(N + input, N + INPUTS + input)] = 1.0;
         }
         let exact = exponential(&block);
-        let column = |from: usize| -> [f64; N] { std::array::from_fn(|row| exact[(row, from)]) };
-        let ramp: [[f64; N]; INPUTS] = std::array::from_fn(|input| column(N + INPUTS + input));
-        let held: [[f64; N]; INPUTS] = std::array::from_fn(|input| column(N + input));
+        let of = |row: usize, column: usize| Lanes::all(exact[(row, column)]);
+        let (held, ramp) = (N, N + INPUTS);
         Self {
-            state: std::array::from_fn(column),
-            start: std::array::from_fn(|input| std::array::from_fn(|row| held[input][row] - ramp[input][row])),
-            end: ramp,
+            state: columns(of),
+            start: columns(|row, input| of(row, held + input) - of(row, ramp + input)),
+            end: columns(|row, input| of(row, ramp + input)),
+        }
+    }
+}
+
+/// Columns from their elements by row and column.
+fn columns<const N: usize, const M: usize, const L: usize>(
+    of: impl Fn(usize, usize) -> Lanes<L>,
+) -> [[Lanes<L>; N]; M] {
+    std::array::from_fn(|column| std::array::from_fn(|row| of(row, column)))
+}
+
+#[allow(clippy::needless_range_loop, reason = "column by column, as the equation has it")]
+impl<const N: usize, const L: usize> Step<N, L> {
+    /// Side by side.
+    pub(super) fn beside(steps: [&Step<N, 1>; L]) -> Self {
+        let beside = |of: &dyn Fn(&Step<N, 1>) -> f64| Lanes::each(|lane| of(steps[lane]));
+        Self {
+            state: columns(|row, column| beside(&|step| step.state[column][row][0])),
+            start: columns(|row, column| beside(&|step| step.start[column][row][0])),
+            end: columns(|row, column| beside(&|step| step.end[column][row][0])),
         }
     }
 
     /// `A x + B0 u`.
     #[inline(always)]
-    pub(crate) fn free(&self, x: &[f64; N], u: &[f64; INPUTS]) -> [f64; N] {
-        let mut next = [0.0; N];
-        for (column, value) in self.state.iter().zip(x) {
-            add(&mut next, column, *value);
+    pub(super) fn free(&self, x: &[Lanes<L>; N], u: &[Lanes<L>; INPUTS]) -> [Lanes<L>; N] {
+        let mut next = [Lanes::all(0.0); N];
+        for column in 0..N {
+            add(&mut next, &self.state[column], x[column]);
         }
-        for (column, value) in self.start.iter().zip(u) {
-            if *value != 0.0 {
-                add(&mut next, column, *value);
+        for input in 0..INPUTS {
+            if u[input].any(u[input], |value, _| value != 0.0) {
+                add(&mut next, &self.start[input], u[input]);
             }
         }
         next
@@ -49,10 +112,11 @@ impl<const N: usize> Step<N> {
 }
 
 /// `next += value * column`.
+#[allow(clippy::needless_range_loop, reason = "row by row, as the compiler's vectors have it")]
 #[inline(always)]
-pub(crate) fn add<const N: usize>(next: &mut [f64; N], column: &[f64; N], value: f64) {
-    for (next, column) in next.iter_mut().zip(column) {
-        *next += column * value;
+pub(super) fn add<const N: usize, const L: usize>(next: &mut [Lanes<L>; N], column: &[Lanes<L>; N], value: Lanes<L>) {
+    for row in 0..N {
+        next[row] += column[row] * value;
     }
 }
 

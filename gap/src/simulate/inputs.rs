@@ -1,5 +1,7 @@
 //! What drives a prediction: the logged inputs, and what follows from them once for all predictions.
 
+use std::ops::{Add, Mul, Sub};
+
 use gimbal_servo::bearing;
 
 use super::Prediction;
@@ -122,7 +124,11 @@ fn less(a: &[f64], b: &[f64]) -> Vec<f64> {
 }
 
 /// A vector after a small turn about x, y, z.
-pub(crate) fn turned([x, y, z]: [f64; 3], [about_x, about_y, about_z]: [f64; 3]) -> [f64; 3] {
+#[inline(always)]
+pub(crate) fn turned<T>([x, y, z]: [T; 3], [about_x, about_y, about_z]: [T; 3]) -> [T; 3]
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+{
     [x + about_y * z - about_z * y, y + about_z * x - about_x * z, z + about_x * y - about_y * x]
 }
 

@@ -8,10 +8,14 @@ mod bearing;
 mod chain;
 mod discrete;
 mod inputs;
+mod lanes;
+mod law;
+mod machine;
+mod now;
 mod physics;
-mod run;
+mod predict;
 
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
 pub use physics::{Friction, Hysteresis, Measurement, Physics, Ripple};
-pub use run::{Begin, Prediction, predict};
+pub use predict::{Begin, Prediction, Variant, predict, predict_each};

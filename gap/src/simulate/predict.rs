@@ -1,0 +1,203 @@
+//! Predictions of a log: one, or many that differ a little.
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use super::bearing::Viscous;
+use super::chain::{Chain, FULL, PLAIN, THETA, TORQUE};
+use super::discrete::Steps;
+use super::machine::Machine;
+use super::{Inputs, Physics};
+
+/// Predictions that go side by side.
+const SIDE_BY_SIDE: usize = 4;
+
+/// Where a prediction begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Begin {
+    /// phi', theta, theta', four sections, integrator, motor torque, phi.
+    pub state: [f64; PLAIN],
+    /// Share of the cable's loop.
+    pub hysteresis: f64,
+}
+
+/// What the sensors would read, and what they do not see.
+#[derive(Debug, Clone, Default)]
+pub struct Prediction {
+    /// Pick-off angle as logged [rad].
+    pub gyro_angle_rad: Vec<f64>,
+    /// Motor torque as logged [N m].
+    pub motor_torque_nm: Vec<f64>,
+    /// phi [rad].
+    pub gimbal_angle_rad: Vec<f64>,
+    /// phi' [rad/s].
+    pub gimbal_rate_radps: Vec<f64>,
+    /// Bearing friction [N m].
+    pub friction_nm: Vec<f64>,
+    /// Rows on a stop.
+    pub on_stop: Vec<bool>,
+}
+
+impl Prediction {
+    pub(super) fn zero(rows: usize) -> Self {
+        Self {
+            gyro_angle_rad: vec![0.0; rows],
+            motor_torque_nm: vec![0.0; rows],
+            gimbal_angle_rad: vec![0.0; rows],
+            gimbal_rate_radps: vec![0.0; rows],
+            friction_nm: vec![0.0; rows],
+            on_stop: vec![false; rows],
+        }
+    }
+
+    /// What the sensors make of it.
+    fn logged(&mut self, physics: &Physics) {
+        let sensors = physics.measurement;
+        for theta in &mut self.gyro_angle_rad {
+            *theta = *theta * sensors.pickoff_factor + sensors.pickoff_bias_rad;
+        }
+        for torque in &mut self.motor_torque_nm {
+            *torque = *torque * sensors.torque_factor + sensors.torque_bias_nm;
+        }
+    }
+}
+
+impl Begin {
+    /// At rest under the first row, with the pick-off angle and motor torque that the log begins with.
+    #[must_use]
+    pub fn at(physics: &Physics, inputs: &Inputs, theta_rad: f64, torque_nm: Option<f64>) -> Self {
+        let mut state = [0.0; PLAIN];
+        let rate = inputs.rate_radps[0];
+        let level = inputs.load_nm[0] + Viscous::new(&physics.config.bearing).torque_nm(rate.abs());
+        let unbalance = &physics.config.unbalance;
+        let disturbance = level * (rate / physics.config.bearing.slip_rate_radps).clamp(-1.0, 1.0)
+            + unbalance.torque_nm(inputs.accel_mps2[0][0], inputs.accel_mps2[1][0]);
+        state[THETA] = theta_rad;
+        state[super::chain::INTEGRATOR] = torque_nm.unwrap_or(disturbance);
+        state[TORQUE] = torque_nm.unwrap_or(disturbance);
+        Self { state, hysteresis: 0.0 }
+    }
+}
+
+/// One of many predictions.
+#[derive(Debug, Clone)]
+pub struct Variant<'a> {
+    /// The platform.
+    pub physics: Physics,
+    /// Where it begins.
+    pub begin: Begin,
+    /// The vehicle rate in the place of that of the inputs [rad/s].
+    pub rate_radps: Option<&'a [f64]>,
+    /// Rows that are asked for.
+    pub rows: usize,
+}
+
+/// Runs the physics over the inputs.
+#[must_use]
+pub fn predict(physics: &Physics, inputs: &Inputs, begin: &Begin, rows: usize) -> Prediction {
+    let variant = Variant { physics: physics.clone(), begin: begin.clone(), rate_radps: None, rows };
+    let [prediction] = together([&variant], inputs);
+    prediction
+}
+
+/// Many at once, on all cores, each as it would be by itself: what is made of each.
+pub fn predict_each<T: Send>(
+    variants: &[Variant],
+    inputs: &Inputs,
+    make: impl Fn(usize, Prediction) -> T + Sync,
+) -> Vec<T> {
+    let kind = |index: usize| Kind::of(&variants[index]);
+    let mut order: Vec<usize> = (0..variants.len()).collect();
+    order.sort_by_key(|&index| kind(index));
+    let of_a_kind = order.chunk_by(|&a, &b| kind(a) == kind(b));
+    let groups: Vec<&[usize]> = of_a_kind.flat_map(|group| group.chunks(SIDE_BY_SIDE)).collect();
+    let run = |group: &&[usize]| -> Vec<(usize, T)> {
+        // the last again where some are missing
+        let of = |lane: usize| &variants[group[lane.min(group.len() - 1)]];
+        let predictions: Vec<Prediction> = match group.len() {
+            1 => together([of(0)], inputs).into(),
+            _ => together::<SIDE_BY_SIDE>(std::array::from_fn(of), inputs).into(),
+        };
+        group.iter().zip(predictions).map(|(&index, prediction)| (index, make(index, prediction))).collect()
+    };
+    let mut made: Vec<(usize, T)> = groups.par_iter().with_max_len(1).flat_map_iter(run).collect();
+    made.sort_by_key(|(index, _)| *index);
+    made.into_iter().map(|(_, made)| made).collect()
+}
+
+/// What predictions that go side by side have in common.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Kind {
+    states: usize,
+    presliding: bool,
+    no_bearing: bool,
+    rows: usize,
+    skew: u64,
+    /// What is slower lane by lane: shapes of friction, cable or ripple, a motor with corners.
+    slower: [bool; 3],
+}
+
+impl Kind {
+    fn of(variant: &Variant) -> Self {
+        let physics = &variant.physics;
+        Self {
+            states: Chain::states(physics),
+            presliding: physics.friction.presliding_rad > 0.0,
+            no_bearing: physics.config.bearing.count == 0,
+            rows: variant.rows,
+            skew: physics.measurement.skew_s.to_bits(),
+            slower: [
+                physics.friction.per_g != 0.0
+                    || physics.friction.stribeck.is_some()
+                    || physics.friction.drift.is_some(),
+                physics.hysteresis.is_some() || physics.ripple.is_some(),
+                physics.limit_nm.is_some() || physics.dead_zone_nm > 0.0,
+            ],
+        }
+    }
+}
+
+/// Predictions of one kind.
+fn together<const L: usize>(variants: [&Variant; L], inputs: &Inputs) -> [Prediction; L] {
+    let shifted;
+    let skew_s = variants[0].physics.measurement.skew_s;
+    let inputs = if skew_s == 0.0 {
+        inputs
+    } else {
+        shifted = inputs.advanced(skew_s);
+        &shifted
+    };
+    let mut predictions = if Chain::states(&variants[0].physics) == PLAIN {
+        run::<PLAIN, L>(variants, inputs)
+    } else {
+        run::<FULL, L>(variants, inputs)
+    };
+    for (prediction, variant) in predictions.iter_mut().zip(variants) {
+        prediction.logged(&variant.physics);
+    }
+    predictions
+}
+
+fn run<const N: usize, const L: usize>(variants: [&Variant; L], inputs: &Inputs) -> [Prediction; L] {
+    let steps = variants.map(|own| Steps::<N>::new(&own.physics, inputs.period_s));
+    let rates = variants.map(|own| own.rate_radps.unwrap_or(&inputs.rate_radps));
+    let machine = Machine::new(steps.each_ref(), inputs, rates);
+    Arch::new().dispatch(Run { machine, begin: variants.map(|own| &own.begin), rows: variants[0].rows })
+}
+
+/// A machine that is to run with the widest vectors that there are; bits are the same with all.
+struct Run<'a, const N: usize, const L: usize> {
+    machine: Machine<'a, N, L>,
+    begin: [&'a Begin; L],
+    rows: usize,
+}
+
+impl<const N: usize, const L: usize> WithSimd for Run<'_, N, L> {
+    type Output = [Prediction; L];
+
+    // a closure would be compiled for the narrowest
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.machine.run(self.begin, self.rows)
+    }
+}
