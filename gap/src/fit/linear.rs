@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::Problem;
 use super::draft::{STATE_STEP, remembered_rows};
 use super::hypothesis::{Hypothesis, Outcome, Point};
-use super::normal::{Solution, products, slices, solve};
+use super::normal::{Solution, gram, products, slices, solve};
 use super::pull::Pull;
 
 /// Place of the gimbal's angle at the beginning, which does not die away.
@@ -47,7 +47,7 @@ impl<'a> Linear<'a> {
             (hypothesis.variant(&moved, rows), step)
         };
         let columns = hypothesis.slopes((0..hypothesis.fixed()).map(column).collect(), &now.prediction);
-        let gram = products(&slices(&columns), &slices(&columns), 0..problem.whitener.rows());
+        let gram = gram(&slices(&columns), 0..problem.whitener.rows());
         Self { columns: Cow::Owned(columns), gram }
     }
 

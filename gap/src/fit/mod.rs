@@ -17,6 +17,7 @@ mod search;
 mod signals;
 mod slip;
 mod turning;
+mod vectors;
 mod whiten;
 
 pub(crate) use ground::Ground;

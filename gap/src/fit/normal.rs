@@ -9,6 +9,8 @@ use std::ops::Range;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::vectors::four_by_two;
+
 /// A linear fit.
 #[derive(Debug, Clone)]
 pub struct Solution {
@@ -22,32 +24,72 @@ pub struct Solution {
     pub evidence: f64,
 }
 
-/// Rows of a piece that stays in the cache.
-const PIECE: usize = 1024;
+/// Rows of a piece that stays in the cache, and pieces that are summed by one task.
+const PIECE: usize = 512;
+const PIECES: usize = 16;
 
 /// Products of columns with others, over some rows: `a' b`.
 pub(crate) fn products(a: &[&[f64]], b: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
-    let pieces: Vec<usize> = rows.clone().step_by(PIECE).collect();
-    let zero = || DMatrix::zeros(a.len(), b.len());
-    let of = |mut sum: DMatrix<f64>, &start: &usize| {
-        let end = (start + PIECE).min(rows.end);
-        let wide = DMatrix::from_row_iterator(a.len(), end - start, samples(a, start..end));
-        let tall = DMatrix::from_iterator(end - start, b.len(), samples(b, start..end));
-        sum.gemm(1.0, &wide, &tall, 1.0);
+    summed(a.len(), b.len(), rows, |sum, piece| {
+        let (a, b) = (pieces(a, &piece), pieces(b, &piece));
+        add_products(sum, &a, &b, |_| 0);
+    })
+}
+
+/// Products of columns with each other.
+pub(crate) fn gram(columns: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
+    let n = columns.len();
+    let mut gram = summed(n, n, rows, |sum, piece| {
+        let columns = pieces(columns, &piece);
+        add_products(sum, &columns, &columns, |from| from);
+    });
+    gram.fill_upper_triangle_with_lower_triangle();
+    gram
+}
+
+fn pieces<'a>(columns: &[&'a [f64]], piece: &Range<usize>) -> Vec<&'a [f64]> {
+    columns.iter().map(|column| &column[piece.clone()]).collect()
+}
+
+/// The sum over pieces of rows, in an order of its own whatever the number of threads.
+fn summed(
+    n: usize,
+    m: usize,
+    rows: Range<usize>,
+    add: impl Fn(&mut DMatrix<f64>, Range<usize>) + Sync,
+) -> DMatrix<f64> {
+    let starts: Vec<usize> = rows.clone().step_by(PIECE).collect();
+    let part = |starts: &[usize]| {
+        let mut sum = DMatrix::zeros(n, m);
+        for &start in starts {
+            add(&mut sum, start..(start + PIECE).min(rows.end));
+        }
         sum
     };
-    // in an order of its own whatever the number of threads
-    let parts: Vec<DMatrix<f64>> = pieces.par_chunks(16).map(|pieces| pieces.iter().fold(zero(), of)).collect();
-    parts.into_iter().fold(zero(), |sum, part| sum + part)
+    let parts: Vec<DMatrix<f64>> = starts.par_chunks(PIECES).map(part).collect();
+    parts.into_iter().fold(DMatrix::zeros(n, m), |sum, part| sum + part)
+}
+
+/// Four columns with two at a time, for the columns of b from the first on that has a row from `first_row` on.
+fn add_products(sum: &mut DMatrix<f64>, a: &[&[f64]], b: &[&[f64]], first_row: impl Fn(usize) -> usize) {
+    for (pair, b) in b.chunks(2).enumerate() {
+        let column = 2 * pair;
+        let first = first_row(column) / 4 * 4;
+        for (four, a) in a.chunks(4).enumerate().skip(first / 4) {
+            // the last again where some are missing
+            let products = four_by_two([0, 1, 2, 3].map(|i| a[i.min(a.len() - 1)]), [b[0], b[b.len() - 1]]);
+            for (i, products) in products.iter().enumerate().take(a.len()) {
+                for (j, product) in products.iter().enumerate().take(b.len()) {
+                    sum[(4 * four + i, column + j)] += product;
+                }
+            }
+        }
+    }
 }
 
 /// Products of columns with one series.
 pub(crate) fn drive(columns: &[&[f64]], series: &[f64]) -> DVector<f64> {
     products(columns, &[series], 0..series.len()).column(0).into_owned()
-}
-
-fn samples(columns: &[&[f64]], rows: Range<usize>) -> impl Iterator<Item = f64> {
-    columns.iter().flat_map(move |column| column[rows.clone()].iter().copied())
 }
 
 /// Slices of columns.

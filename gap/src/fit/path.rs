@@ -26,7 +26,12 @@ impl Path {
     pub(crate) fn new(whitener: &Whitener, impulse: &Signals, impulse_nm: f64, period_s: f64) -> Self {
         let plans = whitener.plans();
         let of = |(response, gains): (&Vec<f64>, &Vec<f64>)| {
-            plans.lines(response).iter().zip(gains).map(|(line, gain)| line * (gain / impulse_nm)).collect()
+            plans
+                .lines(response.iter().copied())
+                .iter()
+                .zip(gains)
+                .map(|(line, gain)| line * (gain / impulse_nm))
+                .collect()
         };
         let lines = impulse.iter().zip(whitener.gains()).map(of).collect();
         Self { lines, rows: whitener.valid.len(), step_hz: 1.0 / (plans.length() as f64 * period_s) }
@@ -35,15 +40,17 @@ impl Path {
     /// What a torque is to the whitened channels, row after row; masked rows are zero.
     pub(crate) fn column(&self, whitener: &Whitener, torque_nm: &[f64]) -> Vec<f64> {
         let plans = whitener.plans();
-        let torque = plans.lines(torque_nm);
+        let torque = plans.lines(torque_nm.iter().copied());
         let channels = self.lines.len();
         let mut column = vec![0.0; self.rows * channels];
         for (channel, lines) in self.lines.iter().enumerate() {
             let mut product: Vec<Complex<f64>> =
                 torque.iter().zip(lines).map(|(a, b)| a * b / plans.length() as f64).collect();
             let series = plans.series(&mut product);
-            for k in (0..self.rows).filter(|&k| whitener.valid[k]) {
-                column[k * channels + channel] = series[k];
+            for ((row, value), valid) in column.chunks_exact_mut(channels).zip(&series).zip(&whitener.valid) {
+                if *valid {
+                    row[channel] = *value;
+                }
             }
         }
         whitener.slips().apply(&mut column);
@@ -56,19 +63,34 @@ impl Path {
         let channels = self.lines.len();
         let mut drive = vec![0.0; self.rows];
         for (channel, lines) in self.lines.iter().enumerate() {
-            let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
+            let series = whitened.iter().skip(channel).step_by(channels).copied();
             let mut product: Vec<Complex<f64>> =
-                plans.lines(&series).iter().zip(lines).map(|(a, b)| a * b.conj() / plans.length() as f64).collect();
+                plans.lines(series).iter().zip(lines).map(|(a, b)| a * b.conj() / plans.length() as f64).collect();
             let back = plans.series(&mut product);
             drive.iter_mut().zip(back).for_each(|(drive, back)| *drive += back);
         }
         drive
     }
 
-    /// What the channels see of a torque of 1 N m at a frequency, over the noise.
-    pub(crate) fn seen(&self, hz: f64) -> f64 {
+    /// What the channels see of a torque of 1 N m, over the noise.
+    pub(crate) fn seen(&self) -> Seen {
+        let count = self.lines.first().map_or(0, Vec::len);
+        let of = |line: usize| self.lines.iter().map(|lines| lines[line].norm_sqr()).sum();
+        Seen { lines: (0..count).map(of).collect(), step_hz: self.step_hz }
+    }
+}
+
+/// At each line of the transform.
+pub(crate) struct Seen {
+    lines: Vec<f64>,
+    step_hz: f64,
+}
+
+impl Seen {
+    /// At a frequency.
+    pub(crate) fn at(&self, hz: f64) -> f64 {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
-        let line = (hz.abs() / self.step_hz).round() as usize;
-        self.lines.iter().filter_map(|lines| lines.get(line)).map(Complex::norm_sqr).sum()
+        let line = (hz / self.step_hz + 0.5) as usize;
+        self.lines.get(line).copied().unwrap_or(0.0)
     }
 }

@@ -38,8 +38,9 @@ impl Plans {
     }
 
     /// The lines of values, with zeros up to the length.
-    pub(super) fn lines(&self, values: &[f64]) -> Vec<Complex<f64>> {
-        let mut padded = values.to_vec();
+    pub(super) fn lines(&self, values: impl Iterator<Item = f64>) -> Vec<Complex<f64>> {
+        let mut padded = Vec::with_capacity(self.length);
+        padded.extend(values);
         padded.resize(self.length, 0.0);
         let mut lines = self.forward.make_output_vec();
         // lengths are the plan's own

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Whitener;
 use super::ground::Ground;
-use super::normal::{products, slices};
+use super::normal::{gram, products, slices};
 use super::path::Path;
 use super::pull::Pull;
 use super::signals::{Signals, scaled};
@@ -83,7 +83,7 @@ impl<'a> Problem<'a> {
     /// With its sensitivities, from those that are not whitened.
     pub(super) fn with_columns(mut self, raw: &[Signals], more: &[Signals]) -> Self {
         self.whitened = raw.par_iter().chain(more).map(|column| self.whitener.apply(column)).collect();
-        self.gram = products(&slices(&self.whitened), &slices(&self.whitened), 0..self.whitener.rows());
+        self.gram = gram(&slices(&self.whitened), 0..self.whitener.rows());
         self
     }
 

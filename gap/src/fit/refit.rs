@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::hypothesis::Hypothesis;
 use super::linear::Linear;
-use super::normal::{products, slices, solve};
+use super::normal::{self, products, slices, solve};
 use super::pull::Pull;
 use super::refine::linearised;
 use super::signals::difference;
@@ -28,7 +28,7 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
     let (mut gram, mut drive) = (DMatrix::zeros(n, n), DVector::zeros(n));
     for block in (0..BLOCKS).filter(|block| !out.contains(block)) {
         let range = block * rows / BLOCKS..(block + 1) * rows / BLOCKS;
-        gram += products(&columns, &columns, range.clone());
+        gram += normal::gram(&columns, range.clone());
         drive += products(&columns, &[&fit.residual], range).column(0);
     }
     let temper = linearised(problem, fit.square);

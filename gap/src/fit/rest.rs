@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::Columns;
-use super::normal::{drive, products, slices, solve};
+use super::normal::{drive, gram, slices, solve};
 use super::signals::Signals;
 
 /// Every so many rows are fitted.
@@ -35,7 +35,7 @@ pub(crate) fn rest(raw: &Raw, target: &Signals) -> Signals {
     };
     let thinned: Vec<Vec<f64>> = raw.columns.par_iter().map(thin).collect();
     let (columns, right) = (slices(&thinned), thin(target));
-    let gram = products(&columns, &columns, 0..right.len());
+    let gram = gram(&columns, 0..right.len());
     let drive = drive(&columns, &right);
     let (chosen, coefficients) = greedy(raw, &gram, &drive);
     let channel = |index: usize| -> Vec<f64> {

@@ -11,6 +11,7 @@
 //! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant.
 
 use super::signals::{Signals, difference, scaled};
+use super::vectors::take_along;
 use crate::record::{RateNoise, Record};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
 
@@ -96,8 +97,7 @@ impl Pulse {
         }
         let own = &self.values[from - self.first..to - self.first];
         let samples = &mut samples[from - first..to - first];
-        let along: f64 = own.iter().zip(&*samples).map(|(own, sample)| own * sample).sum();
-        samples.iter_mut().zip(own).for_each(|(sample, own)| *sample -= self.share * along * own);
+        take_along(samples, own, self.share);
     }
 }
 

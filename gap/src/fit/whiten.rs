@@ -84,7 +84,7 @@ impl Whitener {
         let mut noise = Vec::new();
         let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
         for (channel, impulse) in residual.iter().zip(behind.impulse) {
-            let response: Vec<f64> = plans.lines(impulse).iter().map(Complex::norm_sqr).collect();
+            let response: Vec<f64> = plans.lines(impulse.iter().copied()).iter().map(Complex::norm_sqr).collect();
             let shape = |hz: f64| between(&response, hz / step_hz);
             // where hardly anything else is, the rows that turn around show their noise themselves
             let aside = Some(Bands::new(channel, &quiet, Of::Most, behind.period_s));
@@ -132,9 +132,8 @@ impl Whitener {
         let (channels, rows) = (signals.len(), self.valid.len());
         let mut out = vec![0.0; channels * rows];
         for (channel, signal) in signals.iter().enumerate() {
-            let masked: Vec<f64> =
-                signal.iter().zip(&self.valid).map(|(value, valid)| if *valid { *value } else { 0.0 }).collect();
-            let lines = self.plans.lines(&masked);
+            let masked = signal.iter().zip(&self.valid).map(|(value, valid)| if *valid { *value } else { 0.0 });
+            let lines = self.plans.lines(masked);
             let filters = [(&self.gains[channel], false), (&self.turning_gains[channel], true)];
             for (gain, turning) in filters.into_iter().filter(|(gain, _)| !gain.is_empty()) {
                 let mut lines = lines.clone();
@@ -142,8 +141,11 @@ impl Whitener {
                     *line *= gain / self.plans.length() as f64;
                 }
                 let series = self.plans.series(&mut lines);
-                for k in (0..rows).filter(|&k| self.valid[k] && self.turning[k] == turning) {
-                    out[k * channels + channel] = series[k];
+                let counts = self.valid.iter().zip(&self.turning).map(|(valid, turns)| *valid && *turns == turning);
+                for ((row, value), counts) in out.chunks_exact_mut(channels).zip(&series).zip(counts) {
+                    if counts {
+                        row[channel] = *value;
+                    }
                 }
             }
         }
@@ -217,8 +219,7 @@ impl Bands {
             let gain: f64 = (0..length).filter(|&k| valid[start + k]).map(|k| window[k] * window[k]).sum();
             let all: f64 = window.iter().map(|value| value * value).sum();
             if gain > least * all {
-                let tapered: Vec<f64> = (0..length).map(sample).collect();
-                segments.push(plans.lines(&tapered).iter().map(|line| line.norm_sqr() / gain).collect());
+                segments.push(plans.lines((0..length).map(sample)).iter().map(|line| line.norm_sqr() / gain).collect());
             }
         }
         let step_hz = 1.0 / (plans.length() as f64 * period_s);
