@@ -139,12 +139,16 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         shares
     };
     let gap = decision.verdict != Verdict::NoGap;
-    let detectable = detectable(&problem, &model.tolerance);
     let left = matches!(decision.verdict, Verdict::PartlyExplained | Verdict::Unexplained);
-    let portrait = left.then(|| portrait(&problem, &fit));
-    let (correlations, bounds_hit) = (correlations(&problem, &fit), bounds_hit(&problem, &fit));
-    let curve = curve(&problem, &fit, &shrink.nominal);
-    let free_running = if gap { free_running(&record, model, &decision, &fit) } else { Vec::new() };
+    let (free_running, (portrait, detectable, correlations, curve)) = rayon::join(
+        || if gap { free_running(&record, model, &decision, &fit) } else { Vec::new() },
+        || {
+            let portrait = left.then(|| portrait(&problem, &fit));
+            let detectable = detectable(&problem, &model.tolerance);
+            (portrait, detectable, correlations(&problem, &fit), curve(&problem, &fit, &shrink.nominal))
+        },
+    );
+    let bounds_hit = bounds_hit(&problem, &fit);
     let one_step = if gap { one_step(&record, &before, &after) } else { Vec::new() };
     let found_regimes = if gap { regimes(&record, &fit.prediction, &total, channels) } else { Vec::new() };
     let found_spans = if gap && !fit.set.0.is_empty() { spans(&total, channels, period_s) } else { Vec::new() };

@@ -1,7 +1,7 @@
 //! Sensitivities of the nominal prediction: to where it begins, to the nominal parameters, to the candidates.
 
 use super::Columns;
-use super::signals::{Signals, difference, peak};
+use super::signals::{Kept, difference, peak, scaled};
 use crate::library::{Candidate, Nuisance, apply};
 use crate::record::{Record, Signal};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
@@ -23,15 +23,12 @@ pub(crate) struct Draft<'a> {
     pub(crate) base: &'a Physics,
     pub(crate) begin: &'a Begin,
     pub(crate) nominal: &'a Prediction,
+    pub(crate) over_noise: &'a [f64],
 }
 
 impl Draft<'_> {
     /// Columns of the beginning, of the nominal parameters and of the candidates, with their priors.
-    pub(crate) fn columns(
-        &self,
-        nuisances: &[Nuisance],
-        candidates: &[Candidate],
-    ) -> (Columns, Vec<Signals>, Vec<f64>) {
+    pub(crate) fn columns(&self, nuisances: &[Nuisance], candidates: &[Candidate]) -> (Columns, Vec<Kept>, Vec<f64>) {
         let mut columns = Columns { begin: 0, nuisances: nuisances.len(), first: Vec::new() };
         let mut sigma = Vec::new();
         let states: Vec<usize> =
@@ -92,11 +89,11 @@ impl Draft<'_> {
         candidate.probes.iter().map(one).collect()
     }
 
-    /// What variants change, over their steps.
-    pub(crate) fn differences(&self, variants: Vec<(Variant, f64)>) -> Vec<Signals> {
+    /// What variants change, over their steps and the noise.
+    pub(crate) fn differences(&self, variants: Vec<(Variant, f64)>) -> Vec<Kept> {
         let (variants, steps): (Vec<Variant>, Vec<f64>) = variants.into_iter().unzip();
         predict_each(&variants, &self.record.inputs, |index, moved| {
-            difference(self.record, &moved, self.nominal, steps[index])
+            Kept::new(&scaled(difference(self.record, &moved, self.nominal, steps[index]), self.over_noise))
         })
     }
 }

@@ -7,7 +7,7 @@ use super::draft::Draft;
 use super::path::Path;
 use super::rest::{Raw, rest};
 use super::ripple;
-use super::signals::{Signals, peak, residual, scale, scaled, valid};
+use super::signals::{Kept, Signals, peak, residual, scaled, valid};
 use super::slip::{Slips, Turning};
 use super::turning::{at_once, impulse, impulse_nm, remembered, turning_noise, turns};
 use super::whiten::Loop;
@@ -34,7 +34,7 @@ pub(crate) struct Ground<'a> {
     columns: Columns,
     sigma: Vec<f64>,
     /// Sensitivities and nominal residual over the noise.
-    raw: Vec<Signals>,
+    raw: Vec<Kept>,
     target: Signals,
     /// Each channel after an impulse of torque, over the noise.
     impulse: Signals,
@@ -64,9 +64,8 @@ impl<'a> Ground<'a> {
         let offer = offer(record, &nominal);
         let mut candidates = candidates(&record.inputs, &offer);
         candidates.retain(|candidate| !not_looked_for.contains(&candidate.effect));
-        let draft = Draft { record, base: &base, begin: &begin, nominal: &nominal };
-        let (columns, mut raw, sigma) = draft.columns(&nuisances, &candidates);
-        scale(&mut raw, &over_noise);
+        let draft = Draft { record, base: &base, begin: &begin, nominal: &nominal, over_noise: &over_noise };
+        let (columns, raw, sigma) = draft.columns(&nuisances, &candidates);
         Self {
             record,
             stop_rad: model.config.gyro.stop_angle_rad,
@@ -112,8 +111,7 @@ impl<'a> Ground<'a> {
             more.extend(self.draft().probes(&candidate));
             candidates.push(candidate);
         }
-        let mut more = self.draft().differences(more);
-        scale(&mut more, &self.over_noise);
+        let more = self.draft().differences(more);
         let problem = Problem {
             record: self.record,
             stop_rad: self.stop_rad,
@@ -135,7 +133,8 @@ impl<'a> Ground<'a> {
     }
 
     fn draft(&self) -> Draft<'_> {
-        Draft { record: self.record, base: &self.base, begin: &self.begin, nominal: &self.nominal }
+        let (base, begin, nominal) = (&self.base, &self.begin, &self.nominal);
+        Draft { record: self.record, base, begin, nominal, over_noise: &self.over_noise }
     }
 
     fn whitener(&self, rest: &Signals, turns_at_once: bool) -> Whitener {

@@ -3,6 +3,7 @@
 use gimbal_plant::{Bound, Effect};
 use nalgebra::DVector;
 
+use super::normal::narrow;
 use super::pull::Pull;
 use super::signals::{difference, residual};
 use super::{Problem, Set};
@@ -125,16 +126,16 @@ impl<'a> Hypothesis<'a> {
     }
 
     /// What the prediction changes by from a point to moved ones, whitened, over the steps.
-    pub(crate) fn slopes(&self, moved: Vec<(Variant, f64)>, now: &Prediction) -> Vec<Vec<f64>> {
+    pub(crate) fn slopes(&self, moved: Vec<(Variant, f64)>, now: &Prediction) -> Vec<Vec<f32>> {
         let (variants, steps): (Vec<Variant>, Vec<f64>) = moved.into_iter().unzip();
         let record = self.problem.record;
         predict_each(&variants, &record.inputs, |index, moved| {
-            self.problem.whiten(difference(record, &moved, now, steps[index]))
+            narrow(&self.problem.whiten(difference(record, &moved, now, steps[index])))
         })
     }
 
     /// Sensitivity to every free value.
-    pub(crate) fn sensitivities(&self, point: &Point, now: &Prediction) -> Vec<Vec<f64>> {
+    pub(crate) fn sensitivities(&self, point: &Point, now: &Prediction) -> Vec<Vec<f32>> {
         let of = |free: &Free| {
             let mut moved = point.clone();
             let value = &mut moved.values[free.effect][free.value];

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::Problem;
 use super::draft::{STATE_STEP, remembered_rows};
 use super::hypothesis::{Hypothesis, Outcome, Point};
-use super::normal::{Solution, gram, products, slices, solve};
+use super::normal::{Solution, gram, narrow, products, slices, solve};
 use super::pull::Pull;
 
 /// Place of the gimbal's angle at the beginning, which does not die away.
@@ -15,7 +15,7 @@ const PHI: usize = 9;
 
 /// Sensitivities to the beginning and to the nominal parameters, and their Gram matrix.
 pub(crate) struct Linear<'a> {
-    pub(crate) columns: Cow<'a, [Vec<f64>]>,
+    pub(crate) columns: Cow<'a, [Vec<f32>]>,
     gram: DMatrix<f64>,
 }
 
@@ -52,13 +52,14 @@ impl<'a> Linear<'a> {
     }
 
     /// Normal equations of these columns and others.
-    pub(crate) fn joined(&self, others: &[Vec<f64>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    pub(crate) fn joined(&self, others: &[Vec<f32>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let fixed = self.columns.len();
         let more = others.len();
         let mut columns = slices(&self.columns);
         columns.extend(slices(others));
         let mut right = slices(others);
-        right.push(residual);
+        let residual = narrow(residual);
+        right.push(&residual);
         let fresh = products(&columns, &right, 0..residual.len());
         let mut gram = DMatrix::zeros(fixed + more, fixed + more);
         gram.view_mut((0, 0), (fixed, fixed)).copy_from(&self.gram);
@@ -90,7 +91,7 @@ impl<'a> Equations<'a> {
         hypothesis: &'a Hypothesis,
         point: &'a Point,
         linear: &Linear,
-        sensitivities: &[Vec<f64>],
+        sensitivities: &[Vec<f32>],
         residual: &[f64],
         temper: f64,
     ) -> Self {

@@ -9,7 +9,7 @@ use std::ops::Range;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::vectors::four_by_two;
+use super::vectors::{Sample, four_by_two};
 
 /// A linear fit.
 #[derive(Debug, Clone)]
@@ -29,7 +29,7 @@ const PIECE: usize = 512;
 const PIECES: usize = 16;
 
 /// Products of columns with others, over some rows: `a' b`.
-pub(crate) fn products(a: &[&[f64]], b: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
+pub(crate) fn products<T: Sample, U: Sample>(a: &[&[T]], b: &[&[U]], rows: Range<usize>) -> DMatrix<f64> {
     summed(a.len(), b.len(), rows, |sum, piece| {
         let (a, b) = (pieces(a, &piece), pieces(b, &piece));
         add_products(sum, &a, &b, |_| 0);
@@ -37,7 +37,7 @@ pub(crate) fn products(a: &[&[f64]], b: &[&[f64]], rows: Range<usize>) -> DMatri
 }
 
 /// Products of columns with each other.
-pub(crate) fn gram(columns: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
+pub(crate) fn gram<T: Sample>(columns: &[&[T]], rows: Range<usize>) -> DMatrix<f64> {
     let n = columns.len();
     let mut gram = summed(n, n, rows, |sum, piece| {
         let columns = pieces(columns, &piece);
@@ -47,7 +47,7 @@ pub(crate) fn gram(columns: &[&[f64]], rows: Range<usize>) -> DMatrix<f64> {
     gram
 }
 
-fn pieces<'a>(columns: &[&'a [f64]], piece: &Range<usize>) -> Vec<&'a [f64]> {
+fn pieces<'a, T>(columns: &[&'a [T]], piece: &Range<usize>) -> Vec<&'a [T]> {
     columns.iter().map(|column| &column[piece.clone()]).collect()
 }
 
@@ -71,7 +71,12 @@ fn summed(
 }
 
 /// Four columns with two at a time, for the columns of b from the first on that has a row from `first_row` on.
-fn add_products(sum: &mut DMatrix<f64>, a: &[&[f64]], b: &[&[f64]], first_row: impl Fn(usize) -> usize) {
+fn add_products<T: Sample, U: Sample>(
+    sum: &mut DMatrix<f64>,
+    a: &[&[T]],
+    b: &[&[U]],
+    first_row: impl Fn(usize) -> usize,
+) {
     for (pair, b) in b.chunks(2).enumerate() {
         let column = 2 * pair;
         let first = first_row(column) / 4 * 4;
@@ -88,13 +93,19 @@ fn add_products(sum: &mut DMatrix<f64>, a: &[&[f64]], b: &[&[f64]], first_row: i
 }
 
 /// Products of columns with one series.
-pub(crate) fn drive(columns: &[&[f64]], series: &[f64]) -> DVector<f64> {
+pub(crate) fn drive<T: Sample>(columns: &[&[T]], series: &[f64]) -> DVector<f64> {
     products(columns, &[series], 0..series.len()).column(0).into_owned()
 }
 
 /// Slices of columns.
-pub(crate) fn slices(columns: &[Vec<f64>]) -> Vec<&[f64]> {
+pub(crate) fn slices<T>(columns: &[Vec<T>]) -> Vec<&[T]> {
     columns.iter().map(Vec::as_slice).collect()
+}
+
+/// In single precision, as columns are kept.
+#[allow(clippy::cast_possible_truncation, reason = "single precision is meant")]
+pub(crate) fn narrow(values: &[f64]) -> Vec<f32> {
+    values.iter().map(|value| *value as f32).collect()
 }
 
 /// Fits chosen columns of normal equations.

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::Whitener;
 use super::ground::Ground;
-use super::normal::{gram, products, slices};
+use super::normal::{gram, narrow, products, slices};
 use super::path::Path;
 use super::pull::Pull;
-use super::signals::{Signals, scaled};
+use super::signals::{Kept, Signals, scaled};
 use crate::library::{Candidate, Nuisance};
 use crate::record::Record;
 use crate::simulate::{Begin, Physics};
@@ -58,7 +58,7 @@ pub struct Problem<'a> {
     /// Which column is what.
     pub columns: Columns,
     /// Whitened sensitivities.
-    pub whitened: Vec<Vec<f64>>,
+    pub whitened: Vec<Vec<f32>>,
     /// Their Gram matrix.
     pub gram: DMatrix<f64>,
     /// Noise.
@@ -81,8 +81,9 @@ impl<'a> Problem<'a> {
     }
 
     /// With its sensitivities, from those that are not whitened.
-    pub(super) fn with_columns(mut self, raw: &[Signals], more: &[Signals]) -> Self {
-        self.whitened = raw.par_iter().chain(more).map(|column| self.whitener.apply(column)).collect();
+    pub(super) fn with_columns(mut self, raw: &[Kept], more: &[Kept]) -> Self {
+        self.whitened =
+            raw.par_iter().chain(more).map(|column| narrow(&self.whitener.apply(&column.signals()))).collect();
         self.gram = gram(&slices(&self.whitened), 0..self.whitener.rows());
         self
     }
@@ -102,8 +103,8 @@ impl<'a> Problem<'a> {
 
     /// A torque on the gimbal as the whitened channels show it [N m].
     #[must_use]
-    pub(crate) fn torque_column(&self, torque_nm: &[f64]) -> Vec<f64> {
-        self.path.column(&self.whitener, torque_nm)
+    pub(crate) fn torque_column(&self, torque_nm: &[f64]) -> Vec<f32> {
+        narrow(&self.path.column(&self.whitener, torque_nm))
     }
 
     /// Half the slopes and half the curvatures of the priors of the nominal parameters at their shifts.
@@ -114,7 +115,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Other columns in the place of the first.
-    pub(crate) fn replace(&mut self, columns: Vec<Vec<f64>>) {
+    pub(crate) fn replace(&mut self, columns: Vec<Vec<f32>>) {
         let fixed = columns.len();
         for (old, new) in self.whitened.iter_mut().zip(columns) {
             *old = new;

@@ -49,7 +49,7 @@ pub struct Fit {
     /// What the evidence has beside both: volume of the parameters, cost of the search [nats].
     pub volume: f64,
     /// Sensitivities to the values at the end, whitened, with the values' places.
-    pub sensitivities: Vec<Vec<f64>>,
+    pub sensitivities: Vec<Vec<f32>>,
 }
 
 impl Fit {
@@ -152,7 +152,7 @@ enum Went {
 }
 
 /// Covariance and sensitivities of an iteration.
-type Made = (Solution, Vec<Vec<f64>>);
+type Made = (Solution, Vec<Vec<f32>>);
 
 /// A fit under way.
 struct Walk<'a> {

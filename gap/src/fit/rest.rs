@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::Columns;
 use super::normal::{drive, gram, slices, solve};
-use super::signals::Signals;
+use super::signals::{Kept, Signals};
 
 /// Every so many rows are fitted.
 const THIN: usize = 6;
@@ -19,7 +19,7 @@ const WIDE: f64 = 3.0;
 
 /// Sensitivities that are not whitened yet.
 pub(crate) struct Raw<'a> {
-    pub(crate) columns: &'a [Signals],
+    pub(crate) columns: &'a [Kept],
     pub(crate) layout: &'a Columns,
     /// Prior standard deviations of the columns.
     pub(crate) sigma: &'a [f64],
@@ -30,19 +30,20 @@ pub(crate) struct Raw<'a> {
 /// The residual of that fit.
 pub(crate) fn rest(raw: &Raw, target: &Signals) -> Signals {
     let picks: Vec<usize> = (0..raw.valid.len()).step_by(THIN).filter(|&k| raw.valid[k]).collect();
-    let thin = |signals: &Signals| -> Vec<f64> {
-        signals.iter().flat_map(|signal| picks.iter().map(|&k| signal[k])).collect()
+    let thin = |column: &Kept| -> Vec<f32> {
+        column.channels().iter().flat_map(|signal| picks.iter().map(|&k| signal[k])).collect()
     };
-    let thinned: Vec<Vec<f64>> = raw.columns.par_iter().map(thin).collect();
-    let (columns, right) = (slices(&thinned), thin(target));
+    let thinned: Vec<Vec<f32>> = raw.columns.par_iter().map(thin).collect();
+    let right: Vec<f64> = target.iter().flat_map(|signal| picks.iter().map(|&k| signal[k])).collect();
+    let columns = slices(&thinned);
     let gram = gram(&columns, 0..right.len());
     let drive = drive(&columns, &right);
     let (chosen, coefficients) = greedy(raw, &gram, &drive);
     let channel = |index: usize| -> Vec<f64> {
         let mut rest = target[index].clone();
         for (&column, coefficient) in chosen.iter().zip(&coefficients) {
-            for (rest, value) in rest.iter_mut().zip(&raw.columns[column][index]) {
-                *rest -= coefficient * value;
+            for (rest, value) in rest.iter_mut().zip(&raw.columns[column].channels()[index]) {
+                *rest -= coefficient * f64::from(*value);
             }
         }
         rest

@@ -1,12 +1,29 @@
 //! Series of all channels: predicted, measured less predicted, one prediction less another.
 
-use rayon::prelude::*;
-
+use super::normal::narrow;
 use crate::record::{Record, Signal};
 use crate::simulate::Prediction;
 
 /// One series a channel.
 pub(crate) type Signals = Vec<Vec<f64>>;
+
+/// One series a channel in single precision, as many are kept.
+#[derive(Debug, Clone)]
+pub(crate) struct Kept(Vec<Vec<f32>>);
+
+impl Kept {
+    pub(crate) fn new(signals: &Signals) -> Self {
+        Self(signals.iter().map(|signal| narrow(signal)).collect())
+    }
+
+    pub(crate) fn signals(&self) -> Signals {
+        self.0.iter().map(|signal| signal.iter().copied().map(f64::from).collect()).collect()
+    }
+
+    pub(crate) fn channels(&self) -> &[Vec<f32>] {
+        &self.0
+    }
+}
 
 /// The predicted samples of a channel.
 pub(crate) fn predicted(signal: Signal, prediction: &Prediction) -> &[f64] {
@@ -38,19 +55,12 @@ pub(crate) fn difference(record: &Record, moved: &Prediction, base: &Prediction,
 
 /// Each channel times its own factor.
 pub(crate) fn scaled(mut signals: Signals, by: &[f64]) -> Signals {
-    scale(std::slice::from_mut(&mut signals), by);
-    signals
-}
-
-/// The same of many.
-pub(crate) fn scale(columns: &mut [Signals], by: &[f64]) {
-    columns.par_iter_mut().for_each(|signals| {
-        for (signal, by) in signals.iter_mut().zip(by) {
-            for value in signal {
-                *value *= by;
-            }
+    for (signal, by) in signals.iter_mut().zip(by) {
+        for value in signal {
+            *value *= by;
         }
-    });
+    }
+    signals
 }
 
 /// Rows at which every channel counts.

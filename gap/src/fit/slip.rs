@@ -10,6 +10,7 @@
 //! one block after the other, a' = a after the blocks before it: what comes out is white (Potter's square root).
 //! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant.
 
+use super::normal::narrow;
 use super::signals::{Signals, difference, scaled};
 use super::vectors::take_along;
 use crate::record::{RateNoise, Record};
@@ -39,7 +40,7 @@ struct Pulse {
     /// First sample, of all channels row after row.
     first: usize,
     /// a'.
-    values: Vec<f64>,
+    values: Vec<f32>,
     /// k.
     share: f64,
 }
@@ -81,6 +82,7 @@ impl Slips {
             }
             let square: f64 = values.iter().map(|value| value * value).sum();
             if square > LEAST {
+                let values = narrow(&values);
                 slips.0.push(Pulse { first, values, share: (1.0 - 1.0 / (1.0 + square).sqrt()) / square });
             }
         }

@@ -68,8 +68,10 @@ pub fn free_running(record: &Record, model: &ModelFile, decision: &Decision, fit
         effects.push(ModelEffect { effect, values: vec![factor - 1.0] });
     }
     let nominal = crate::library::platform(model);
-    let runs = [(&model.config, &model.effects, &nominal), (&config, &effects, &fit.physics)];
-    let [before, after] = runs.map(|(config, effects, physics)| run(record, config, effects, physics));
+    let (before, after) = rayon::join(
+        || run(record, &model.config, &model.effects, &nominal),
+        || run(record, &config, &effects, &fit.physics),
+    );
     let (Ok(before), Ok(after)) = (before, after) else { return Vec::new() };
     let off = |run: &[Vec<f64>; 3]| -> Vec<f64> {
         let of = |channel: &Channel| {

@@ -50,7 +50,7 @@ pub fn shrink(problem: &Problem, fit: &Fit) -> Shrink {
     let odd: Vec<usize> = (0..BLOCKS).filter(|block| block % 2 == 1).collect();
     let even: Vec<usize> = (0..BLOCKS).filter(|block| block % 2 == 0).collect();
     // fitted without the odd blocks, scored on them, and the other way round
-    let folds = [refit(problem, fit, &odd), refit(problem, fit, &even)];
+    let folds: [Prediction; 2] = rayon::join(|| refit(problem, fit, &odd), || refit(problem, fit, &even)).into();
     let residuals = folds.each_ref().map(|prediction| raw_residual(record, prediction));
     let rows = record.rows();
     let signals = record

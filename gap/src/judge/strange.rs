@@ -9,6 +9,8 @@
 
 use std::fmt;
 
+use rayon::prelude::*;
+
 use super::torques::groups;
 use crate::fit::{Fit, Linear, Problem, solve};
 
@@ -66,7 +68,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     };
     let base = gain(&[]);
     let mut strangers: Vec<Stranger> = groups(problem, fit)
-        .into_iter()
+        .into_par_iter()
         .map(|(of, torques)| Stranger { of, gain: gain(&torques) - base, torques: torques.len() })
         .collect();
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));

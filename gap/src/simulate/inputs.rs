@@ -147,8 +147,12 @@ impl Later {
     /// Row after row, the ends held.
     fn rows<'a>(&self, values: &'a [f64], more: isize) -> impl Iterator<Item = f64> + 'a {
         let shift = self.rows + more;
-        let last = values.len().saturating_sub(1);
-        (0..values.len()).map(move |k| values[k.saturating_add_signed(shift).min(last)])
+        let held = shift.unsigned_abs().min(values.len());
+        let (first, last) = (values.first().copied(), values.last().copied());
+        let (before, inside, after) =
+            if shift < 0 { (held, &values[..values.len() - held], 0) } else { (0, &values[held..], held) };
+        let ends = |value: Option<f64>, count: usize| std::iter::repeat_n(value.unwrap_or(0.0), count);
+        ends(first, before).chain(inside.iter().copied()).chain(ends(last, after))
     }
 
     /// On the line between two rows.
