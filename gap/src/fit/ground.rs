@@ -1,6 +1,8 @@
 //! What a log and a model give before anything is taken for noise: nominal prediction, sensitivities to everything, what
 //! a torque on the gimbal does.
 
+use std::sync::OnceLock;
+
 use gimbal_model_file::ModelFile;
 
 use super::draft::Draft;
@@ -8,7 +10,7 @@ use super::path::Path;
 use super::rest::{Raw, rest};
 use super::ripple;
 use super::signals::{Kept, Signals, peak, residual, scaled, valid};
-use super::slip::{Slips, Turning};
+use super::slip::{Slips, Turned, Turning};
 use super::turning::{at_once, impulse, impulse_nm, remembered, turning_noise, turns};
 use super::whiten::Loop;
 use super::{Columns, Problem, Whitener};
@@ -39,8 +41,9 @@ pub(crate) struct Ground<'a> {
     /// Each channel after an impulse of torque, over the noise.
     impulse: Signals,
     valid: Vec<bool>,
-    /// Rows at which the bearing turns around.
+    /// Rows at which the bearing turns around, and what the noise of the rate does there.
     turns: Vec<bool>,
+    turned: OnceLock<Turned>,
 }
 
 impl<'a> Ground<'a> {
@@ -85,6 +88,7 @@ impl<'a> Ground<'a> {
             columns,
             sigma,
             raw,
+            turned: OnceLock::new(),
         }
     }
 
@@ -147,8 +151,10 @@ impl<'a> Ground<'a> {
         if !turns_at_once {
             return whitener;
         }
-        let turning = Turning { record, base, begin: &self.begin, nominal, turns, scaled: &self.over_noise };
-        let slips = Slips::new(&turning, |signals| whitener.filter(signals));
+        let turned = self.turned.get_or_init(|| {
+            Turning { record, base, begin: &self.begin, nominal, turns, scaled: &self.over_noise }.turned()
+        });
+        let slips = Slips::new(turned, record, |signals| whitener.filter(signals));
         whitener.with_slips(slips)
     }
 

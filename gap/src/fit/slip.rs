@@ -10,8 +10,10 @@
 //! one block after the other, a' = a after the blocks before it: what comes out is white (Potter's square root).
 //! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant.
 
+use rayon::prelude::*;
+
 use super::normal::narrow;
-use super::signals::{Signals, difference, scaled};
+use super::signals::{Kept, Signals, difference, scaled};
 use super::vectors::take_along;
 use crate::record::{RateNoise, Record};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
@@ -23,6 +25,8 @@ const BEFORE: usize = 200;
 const AFTER: usize = 1000;
 /// Rate by which a block is moved, over the slip rate.
 const STEP: f64 = 0.02;
+/// Share of its square that a block's ends are cut at.
+const NOTHING: f64 = 1e-7;
 /// Predictions that are held at a time.
 const TOGETHER: usize = 16;
 /// A block that adds less than this to the variance of the noise is none.
@@ -45,6 +49,13 @@ struct Pulse {
     share: f64,
 }
 
+/// Blocks, and what a change of their rate by 1 rad/s does, over the noise, before any filter: those that are far from each other in
+/// one.
+pub(crate) struct Turned {
+    blocks: Vec<Block>,
+    moved: Vec<(Vec<usize>, Kept)>,
+}
+
 /// What blocks are made from.
 pub(crate) struct Turning<'a> {
     pub(crate) record: &'a Record,
@@ -64,15 +75,11 @@ impl Slips {
     }
 
     /// From the blocks as each shows after the filter of frequencies.
-    pub(crate) fn new(turning: &Turning, filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Self {
-        let blocks = turning.blocks();
+    pub(crate) fn new(turned: &Turned, record: &Record, filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Self {
         let mut slips = Self::default();
-        if blocks.is_empty() {
-            return slips;
-        }
-        let shown = turning.shown(&blocks, filter);
-        for (block, (first, mut values)) in blocks.into_iter().zip(shown) {
-            let sigma = turning.record.rate_noise.of_mean(block.len());
+        let shown = turned.shown(record.channels.len(), filter);
+        for (block, (first, mut values)) in turned.blocks.iter().zip(shown) {
+            let sigma = record.rate_noise.of_mean(block.len());
             for value in &mut values {
                 *value *= sigma;
             }
@@ -82,12 +89,26 @@ impl Slips {
             }
             let square: f64 = values.iter().map(|value| value * value).sum();
             if square > LEAST {
-                let values = narrow(&values);
-                slips.0.push(Pulse { first, values, share: (1.0 - 1.0 / (1.0 + square).sqrt()) / square });
+                let (ends, share) = (over(&values, NOTHING * square), (1.0 - 1.0 / (1.0 + square).sqrt()) / square);
+                slips.0.push(Pulse { first: first + ends.start, values: narrow(&values[ends]), share });
             }
         }
         slips
     }
+}
+
+/// Without the ends whose squares come to no more than this.
+fn over(values: &[f64], square: f64) -> std::ops::Range<usize> {
+    let from = |values: &mut dyn Iterator<Item = &f64>| {
+        let mut sum = 0.0;
+        values
+            .take_while(|value| {
+                sum += *value * *value;
+                sum <= square
+            })
+            .count()
+    };
+    from(&mut values.iter())..values.len() - from(&mut values.iter().rev())
 }
 
 impl Pulse {
@@ -118,21 +139,20 @@ impl Turning<'_> {
         }
     }
 
-    /// Each block's samples after a change of its rate by 1 rad/s, and where they begin; blocks that are far from each other share a
-    /// prediction.
-    fn shown(&self, blocks: &[Block], filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Vec<(usize, Vec<f64>)> {
-        let channels = self.record.channels.len();
+    /// The blocks, and what a change of their rate does.
+    pub(crate) fn turned(&self) -> Turned {
+        let blocks = self.blocks();
         let step = STEP * self.base.config.bearing.slip_rate_radps;
         let inputs = &self.record.inputs;
-        let apart = far_apart(blocks);
-        let mut shown = vec![(0, Vec::new()); blocks.len()];
-        for some in apart.chunks(TOGETHER) {
-            let moved = |group: &Vec<usize>| {
+        let mut moved = Vec::new();
+        let groups = far_apart(&blocks);
+        for some in groups.chunks(TOGETHER) {
+            let of = |group: &Vec<usize>| {
                 let mut rate_radps = inputs.rate_radps.clone();
                 group.iter().flat_map(|&index| blocks[index].clone()).for_each(|k| rate_radps[k] += step);
                 rate_radps
             };
-            let rates: Vec<Vec<f64>> = some.iter().map(moved).collect();
+            let rates: Vec<Vec<f64>> = some.iter().map(of).collect();
             let (physics, begin) = (self.base, self.begin);
             let variants: Vec<Variant> = rates
                 .iter()
@@ -143,16 +163,31 @@ impl Turning<'_> {
                     rows: usize::MAX,
                 })
                 .collect();
-            let pieces = predict_each(&variants, inputs, |group, moved| {
-                let whitened = filter(&scaled(difference(self.record, &moved, self.nominal, step), self.scaled));
-                let piece = |&index: &usize| {
-                    let first = channels * blocks[index].start.saturating_sub(BEFORE);
-                    let last = (channels * (blocks[index].end + AFTER)).min(whitened.len());
-                    (index, (first, whitened[first..last].to_vec()))
-                };
-                some[group].iter().map(piece).collect::<Vec<_>>()
-            });
-            pieces.into_iter().flatten().for_each(|(index, piece)| shown[index] = piece);
+            moved.extend(predict_each(&variants, inputs, |_, moved| {
+                Kept::new(&scaled(difference(self.record, &moved, self.nominal, step), self.scaled))
+            }));
+        }
+        Turned { blocks, moved: groups.into_iter().zip(moved).collect() }
+    }
+}
+
+impl Turned {
+    /// Each block's samples after the filter, and where they begin.
+    fn shown(&self, channels: usize, filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Vec<(usize, Vec<f64>)> {
+        let pieces = |(group, moved): &(Vec<usize>, Kept)| {
+            let whitened = filter(&moved.signals());
+            let piece = |&index: &usize| {
+                let block = &self.blocks[index];
+                let first = channels * block.start.saturating_sub(BEFORE);
+                let last = (channels * (block.end + AFTER)).min(whitened.len());
+                (index, (first, whitened[first..last].to_vec()))
+            };
+            group.iter().map(piece).collect::<Vec<_>>()
+        };
+        let mut shown = vec![(0, Vec::new()); self.blocks.len()];
+        let all: Vec<_> = self.moved.par_iter().flat_map_iter(pieces).collect();
+        for (index, piece) in all {
+            shown[index] = piece;
         }
         shown
     }
