@@ -181,21 +181,28 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
 /// high, and that what an effect did, or what the nominal parameters could not take away at once, was in it.
 fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
     let quiet = |problem: &Problem, fit: &Fit| fit.square < TOO_QUIET * problem.whitener.count() as f64;
-    let ground = Ground::new(record, model);
-    let again = |fit: &Fit| ground.problem(Some(raw_residual(record, &fit.prediction)));
+    let left = |fit: &Fit| Some(raw_residual(record, &fit.prediction));
+    let mut ground = Ground::new(record, model);
     let mut problem = ground.problem(None);
     let mut nominal = null(&problem);
     if quiet(&problem, &nominal) {
-        problem = again(&nominal);
+        drop(problem);
+        problem = ground.problem(left(&nominal));
         nominal = null(&problem);
     }
     let mut found = search_from(&mut problem, nominal);
-    for _ in 0..AGAIN {
+    for more in (0..AGAIN).rev() {
         let best = found.fits.iter().fold(&found.null, |best, fit| if fit.square < best.square { fit } else { best });
         if !quiet(&problem, best) {
             break;
         }
-        problem = again(best);
+        let rest = left(best);
+        // what is not needed any more is most of the memory
+        drop((problem, found));
+        problem = ground.problem(rest);
+        if more == 0 {
+            ground.forget();
+        }
         found = search(&mut problem);
     }
     (problem, found)

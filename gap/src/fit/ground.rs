@@ -136,6 +136,12 @@ impl<'a> Ground<'a> {
         problem.with_columns(&self.raw, &more)
     }
 
+    /// Gives back what only another problem would need.
+    pub(crate) fn forget(&mut self) {
+        self.raw = Vec::new();
+        self.turned = OnceLock::new();
+    }
+
     fn draft(&self) -> Draft<'_> {
         let (base, begin, nominal) = (&self.base, &self.begin, &self.nominal);
         Draft { record: self.record, base, begin, nominal, over_noise: &self.over_noise }

@@ -5,11 +5,12 @@
 
 use std::cell::OnceCell;
 
-use super::chain::{FULL, INPUTS, PHI, PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
+use super::chain::{FULL, PHI, PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
 use super::discrete::{DIVISIONS, Step, Steps, add};
 use super::lanes::Lanes;
 use super::law::Law;
 use super::now::Now;
+use super::running::Running;
 use super::{Begin, Inputs, Prediction};
 
 /// How a full step is divided: where nothing turns around, where friction turns around slowly, and where it turns
@@ -19,47 +20,6 @@ const SLOW_STEPS: usize = 1;
 const SHORT_STEPS: usize = 2;
 /// Change of w over a full step, over the slip rate, up to which friction turns around slowly.
 const SLOWLY: f64 = 0.25;
-
-/// What changes while the machine runs.
-#[derive(Debug, Clone, Copy)]
-struct Running<const N: usize, const L: usize> {
-    x: [Lanes<L>; N],
-    /// Inputs of the chain at x.
-    u: [Lanes<L>; INPUTS],
-    /// w at x.
-    w: Lanes<L>,
-    friction: Lanes<L>,
-    /// Share of friction built up, with `presliding`.
-    zeta: Lanes<L>,
-    hysteresis: Lanes<L>,
-    /// -1, 0, 1.
-    stop: [i8; L],
-}
-
-impl<const N: usize, const L: usize> Running<N, L> {
-    /// One of them.
-    fn of(&self, lane: usize) -> Running<N, 1> {
-        Running {
-            x: self.x.map(|x| Lanes::all(x[lane])),
-            u: self.u.map(|u| Lanes::all(u[lane])),
-            w: Lanes::all(self.w[lane]),
-            friction: Lanes::all(self.friction[lane]),
-            zeta: Lanes::all(self.zeta[lane]),
-            hysteresis: Lanes::all(self.hysteresis[lane]),
-            stop: [self.stop[lane]],
-        }
-    }
-
-    fn put(&mut self, lane: usize, one: &Running<N, 1>) {
-        self.x.iter_mut().zip(&one.x).for_each(|(all, one)| all[lane] = one[0]);
-        self.u.iter_mut().zip(&one.u).for_each(|(all, one)| all[lane] = one[0]);
-        self.w[lane] = one.w[0];
-        self.friction[lane] = one.friction[0];
-        self.zeta[lane] = one.zeta[0];
-        self.hysteresis[lane] = one.hysteresis[0];
-        self.stop[lane] = one.stop[0];
-    }
-}
 
 /// What goes through the inputs.
 pub(super) struct Machine<'a, const N: usize, const L: usize> {

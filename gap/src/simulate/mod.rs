@@ -14,6 +14,7 @@ mod machine;
 mod now;
 mod physics;
 mod predict;
+mod running;
 
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;

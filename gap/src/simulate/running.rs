@@ -1,0 +1,46 @@
+//! What changes while a machine runs.
+
+use super::chain::INPUTS;
+use super::lanes::Lanes;
+
+/// The state of all predictions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Running<const N: usize, const L: usize> {
+    pub(super) x: [Lanes<L>; N],
+    /// Inputs of the chain at x.
+    pub(super) u: [Lanes<L>; INPUTS],
+    /// w at x.
+    pub(super) w: Lanes<L>,
+    pub(super) friction: Lanes<L>,
+    /// Share of friction built up, with `presliding`.
+    pub(super) zeta: Lanes<L>,
+    pub(super) hysteresis: Lanes<L>,
+    /// -1, 0, 1.
+    pub(super) stop: [i8; L],
+}
+
+impl<const N: usize, const L: usize> Running<N, L> {
+    /// One of them.
+    pub(super) fn of(&self, lane: usize) -> Running<N, 1> {
+        Running {
+            x: self.x.map(|x| Lanes::all(x[lane])),
+            u: self.u.map(|u| Lanes::all(u[lane])),
+            w: Lanes::all(self.w[lane]),
+            friction: Lanes::all(self.friction[lane]),
+            zeta: Lanes::all(self.zeta[lane]),
+            hysteresis: Lanes::all(self.hysteresis[lane]),
+            stop: [self.stop[lane]],
+        }
+    }
+
+    /// One of them, gone on by itself.
+    pub(super) fn put(&mut self, lane: usize, one: &Running<N, 1>) {
+        self.x.iter_mut().zip(&one.x).for_each(|(all, one)| all[lane] = one[0]);
+        self.u.iter_mut().zip(&one.u).for_each(|(all, one)| all[lane] = one[0]);
+        self.w[lane] = one.w[0];
+        self.friction[lane] = one.friction[0];
+        self.zeta[lane] = one.zeta[0];
+        self.hysteresis[lane] = one.hysteresis[0];
+        self.stop[lane] = one.stop[0];
+    }
+}
