@@ -204,3 +204,65 @@ impl<const N: usize, const L: usize> WithSimd for Run<'_, N, L> {
         self.machine.run(self.begin, self.rows)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Begin, Prediction, Variant, predict, predict_each};
+    use crate::library::{apply, platform};
+    use crate::simulate::{Inputs, Physics};
+
+    fn swayed(rows: usize) -> Inputs {
+        let wave = |size: f64, hz: f64| -> Vec<f64> {
+            (0..rows).map(|k| size * (std::f64::consts::TAU * hz * k as f64 * 1e-3).sin()).collect()
+        };
+        let mut inputs = Inputs {
+            period_s: 1e-3,
+            accel_mps2: [wave(3.0, 0.7), wave(5.0, 1.1), wave(9.0, 0.4)],
+            rate_radps: wave(0.3, 2.3),
+            ..Inputs::default()
+        };
+        inputs.complete(&gimbal_model_file::ModelFile::default().config.bearing, 0.0);
+        inputs
+    }
+
+    fn bits(prediction: &Prediction) -> Vec<u64> {
+        let of = [&prediction.gyro_angle_rad, &prediction.motor_torque_nm, &prediction.gimbal_angle_rad];
+        of.into_iter().flatten().map(|value| value.to_bits()).collect()
+    }
+
+    #[test]
+    fn contract_side_by_side_has_the_bits_of_each_alone() {
+        let inputs = swayed(3000);
+        let base = platform(&gimbal_model_file::ModelFile::default());
+        let begin = Begin::at(&base, &inputs, 0.0, None);
+        let mut all: Vec<Physics> = Vec::new();
+        for share in [0.0, 0.01, 0.2, 0.9] {
+            let mut friction = base.clone();
+            friction.friction.load_factor += share;
+            let mut stopped = base.clone();
+            // some meet the stop, and not at the same time
+            stopped.config.gyro.stop_angle_rad *= 0.01 + share;
+            all.extend([friction, stopped]);
+            for effect in ["stribeck", "presliding", "torque_ripple", "dead_zone", "cable_hysteresis", "flexible_mode"]
+            {
+                let entry = gimbal_plant::Effect::from_name(effect).expect("an effect");
+                let mut own = base.clone();
+                own.config.gyro.damping_nm_s_per_rad *= 1.0 + share;
+                apply(effect, &entry.typical(), &mut own);
+                all.push(own);
+            }
+        }
+        let variant = |physics: &Physics| Variant {
+            physics: physics.clone(),
+            begin: begin.clone(),
+            rate_radps: None,
+            rows: usize::MAX,
+        };
+        let variants: Vec<Variant> = all.iter().map(variant).collect();
+        let together = predict_each(&variants, &inputs, |_, prediction| prediction);
+        assert!(together.iter().any(|own| own.on_stop.contains(&true)));
+        for (index, (physics, own)) in all.iter().zip(&together).enumerate() {
+            assert_eq!(bits(own), bits(&predict(physics, &inputs, &begin, usize::MAX)), "variant {index}");
+        }
+    }
+}
