@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release -p gimbal-gap --example axes -- 400 0`. One in ten axes has an effect beyond the library, three
 //! have none, four have one, two have two; with `none`, `one`, `two`, `beyond` or
-//! `swamped` at the end only those are run. `axes SEED` alone prints one axis and its report.
+//! `swamped` at the end only those are run, with `held` those of one
+//! effect, by a library that lacks it. `axes SEED` alone prints one axis and its report.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +16,7 @@ mod wilson;
 pub mod axes;
 
 use axes::draw::{Group, group};
-use axes::score::{Outcome, Scored, scored};
+use axes::score::{Outcome, Scored, scored, without_its_family};
 use wilson::percent;
 
 fn main() {
@@ -39,7 +40,12 @@ fn main() {
             let only = std::env::args().find_map(kind);
             let seeds: Vec<u64> =
                 (first..first + count).filter(|seed| only.is_none_or(|only| group(*seed) == only)).collect();
-            table(&seeds.into_par_iter().filter_map(scored).collect::<Vec<_>>());
+            let all: Vec<Scored> = if std::env::args().any(|word| word == "held") {
+                seeds.into_par_iter().filter(|seed| group(*seed) == Group::One).filter_map(without_its_family).collect()
+            } else {
+                seeds.into_par_iter().filter_map(scored).collect()
+            };
+            table(&all);
         }
         _ => eprintln!("axes LOGS FIRST_SEED [none|one|two|beyond|swamped], or axes SEED"),
     }
@@ -66,6 +72,20 @@ fn line(one: &Scored) -> String {
 fn median(mut values: Vec<f64>) -> String {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).map_or("-".to_owned(), |value| format!("{value:.1}"))
+}
+
+/// Probabilities told against how often they are right.
+fn calibration(all: &[Scored]) {
+    println!("\n| probability of an effect | named | right |\n|---|---|---|");
+    for (low, high) in [(0.0, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 0.95), (0.95, 1.01)] {
+        let told = all.iter().flat_map(|one| one.told.iter().map(move |(name, p)| (one, name, *p)));
+        let inside: Vec<bool> = told
+            .filter(|(_, _, p)| (low..high).contains(p))
+            .map(|(one, name, _)| one.group != Group::Beyond && one.truth.iter().any(|truth| truth == name))
+            .collect();
+        let right = inside.iter().filter(|right| **right).count();
+        println!("| {low:.2} to {:.2} | {} | {} |", f64::min(high, 1.0), inside.len(), percent(right, inside.len()));
+    }
 }
 
 fn table(all: &[Scored]) {
@@ -122,6 +142,7 @@ fn table(all: &[Scored]) {
             median(ones.iter().filter_map(|one| one.unseen).collect())
         );
     }
+    calibration(all);
     println!("\n```text");
     for one in all
         .iter()

@@ -159,6 +159,20 @@ fn errors(axis: &Axis, diagnosis: &AxisDiagnosis) -> Vec<(&'static str, f64)> {
         .collect()
 }
 
+/// The axis of a seed with one effect, by a library that lacks it: what it names then is wrong, whatever it is.
+pub fn without_its_family(seed: u64) -> Option<Scored> {
+    let axis = drawn(seed)?;
+    let kind = axis.terms.first()?.kind;
+    // parameters and columns cannot be taken out
+    let fixed = [Kind::Inertia, Kind::Viscous, Kind::Level, Kind::Scale];
+    let columns = [Kind::VelocityDelay, Kind::VelocityScale, Kind::TorqueSign];
+    if fixed.contains(&kind) || columns.contains(&kind) {
+        return None;
+    }
+    let name = kind.name();
+    Some(judged(seed, Group::Beyond, axis, &[name.split(':').next().unwrap_or(name)]))
+}
+
 /// Everything for one seed.
 pub fn scored(seed: u64) -> Option<Scored> {
     drawn(seed).map(|axis| judged(seed, group(seed), axis, &[]))

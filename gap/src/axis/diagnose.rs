@@ -72,6 +72,9 @@ pub struct AxisDiagnosis {
 /// Share of the effort from which on a gap is large.
 const LARGE_GAP: f64 = 0.3;
 
+/// A fit that leaves more than this of a log that it did not see is not what the axis has.
+const NOT_CARRIED: f64 = 0.6;
+
 /// A log made ready: columns checked, the motion chosen.
 fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Motion) {
     columns::unwrap(&mut log);
@@ -106,7 +109,24 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     let mut notes = log.notes.clone();
     let mut balance = Balance::new(motion, model);
     let best = balance.search(model);
-    let judged = judge(&balance, &best, model);
+    let mut judged = judge(&balance, &best, model);
+    let unseen: Vec<Vec<Shrunk>> = unseen
+        .into_iter()
+        .map(|(name, log)| {
+            let scores = score(&balance, &best, model, name.clone(), log, &mut notes);
+            // a load that the fitted log did not have is not the fit's to explain: the least that is left counts
+            let left = scores.iter().map(|s| 1.0 - 0.01 * s.reduction_percent).fold(f64::MAX, f64::min);
+            if !scores.is_empty() && !best.members.is_empty() {
+                if left > NOT_CARRIED {
+                    notes.push(format!(
+                        "what is fitted here does not carry over to {name}: it is not what the axis has"
+                    ));
+                }
+                judged.carried(left.clamp(0.0, 1e3));
+            }
+            scores
+        })
+        .collect();
     let motion = &balance.motion;
     let after = balance.residual(&best.members);
     let law = super::law::law(&log, model, &balance.motion);
@@ -138,9 +158,7 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     shrunk.extend(law.shrunk);
     let mut words = checked.words;
     words.extend(law.words);
-    for (name, log) in unseen {
-        shrunk.extend(score(&balance, &best, model, name, log, &mut notes));
-    }
+    shrunk.extend(unseen.into_iter().flatten());
     notes.extend(remarks(&found, model, &balance));
     let lines = Lines {
         time_s: motion.rows.iter().map(|&row| log.first_s + motion.time_s(row)).collect(),

@@ -18,6 +18,17 @@ const LEFT: f64 = 0.03;
 /// Sets within this share of what is left are not told apart, and what is left counts as this share of all at least.
 const SAME: f64 = 0.05;
 const LEAST_SAME: f64 = 0.05;
+/// What is left makes an unknown effect as likely as not at this share.
+const HALF_LEFT: f64 = 0.25;
+/// Sets that leave nothing are wrong this often, on simulated axes of which some have what the library lacks.
+const EVEN_SO: f64 = 0.1;
+/// Kinds of effect that a log may well show at once, and what each further one leaves of the probability of the set.
+const SURE_KINDS: usize = 2;
+const EACH_KIND: f64 = 0.6;
+/// A fit that leaves more than this of a log that it did not see explains a part.
+const CARRIED: f64 = 0.2;
+/// From this probability of something unknown on nothing is explained.
+const UNEXPLAINED: f64 = 0.6;
 /// Share of the gap that is a trifle.
 const TRIFLE: f64 = 0.01;
 /// A gap is one from this power over the floor on.
@@ -186,6 +197,26 @@ pub(super) fn label(shape: &Shape, motion: &Motion) -> String {
     }
 }
 
+impl Judged {
+    /// Takes back what does not carry over: what the fit leaves of a log that it did not see is no less unknown than what
+    /// it leaves of its own.
+    pub(super) fn carried(&mut self, left: f64) {
+        let unknown = doubt(left, 0);
+        if self.verdict == Verdict::NoGap || unknown <= self.unknown_probability {
+            return;
+        }
+        let kept = (1.0 - unknown) / (1.0 - self.unknown_probability).max(1e-9);
+        self.unknown_probability = unknown;
+        self.found.iter_mut().for_each(|found| found.probability *= kept);
+        self.ranking.iter_mut().chain(&mut self.alternatives).for_each(|set| set.probability *= kept);
+        if unknown > UNEXPLAINED {
+            self.verdict = Verdict::Unexplained;
+        } else if matches!(self.verdict, Verdict::Explained | Verdict::CannotTell) && left > CARRIED {
+            self.verdict = Verdict::PartlyExplained;
+        }
+    }
+}
+
 /// Judges the best set.
 pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged {
     let problem = &balance.problem;
@@ -302,7 +333,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let there = (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(1e-300);
     let verdict = if found.is_empty() {
         if gap && left > 0.5 * there && !tolerated(balance, model) { Verdict::Unexplained } else { Verdict::NoGap }
-    } else if unknown_probability > 0.6 {
+    } else if unknown_probability > UNEXPLAINED {
         Verdict::Unexplained
     } else if left > LEFT * there && left > NOTABLE * shrunk.noise_floor.powi(2) {
         Verdict::PartlyExplained
@@ -428,6 +459,15 @@ pub(super) fn parameters(
     told
 }
 
+/// Probability that it is something else, by what is left and by how many kinds of effect it took. With thirty kinds
+/// at hand, a set of many fits almost anything: each beyond the second is half as likely to be there as to make up for
+/// something that the library lacks.
+pub(super) fn doubt(left: f64, kinds: usize) -> f64 {
+    let of_rest = if left <= LEFT { EVEN_SO } else { (left / (left + HALF_LEFT)).max(EVEN_SO) };
+    let known = (1.0 - of_rest) * (0..kinds.saturating_sub(SURE_KINDS)).fold(1.0, |known, _| known * EACH_KIND);
+    (1.0 - known).clamp(0.005, 0.98)
+}
+
 /// Probabilities of sets: how often each is the best when blocks are drawn anew.
 fn rank(balance: &Balance, best: &Set, times: &[Vec<f64>], shrunk: &Shrunk, model: &AxisModel) -> (Vec<Ranked>, f64) {
     let mut sets = balance.problem.beside(best);
@@ -469,8 +509,8 @@ fn rank(balance: &Balance, best: &Set, times: &[Vec<f64>], shrunk: &Shrunk, mode
     }
     let left = (shrunk.after.powi(2) - shrunk.noise_floor.powi(2)).max(0.0)
         / (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(1e-300);
-    let unknown = if left <= LEFT { 0.5 * LEFT } else { left / (left + 0.4) }.clamp(0.005, 0.98);
-    let unknown = if best.members.is_empty() { 0.0 } else { unknown };
+    let kinds_named = names(balance, &best.members, model).len();
+    let unknown = if kinds_named == 0 { 0.0 } else { doubt(left, kinds_named) };
     let total = wins.iter().sum::<f64>() + 1.0;
     let mut ranking: Vec<Ranked> = kinds
         .into_iter()

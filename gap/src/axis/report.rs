@@ -111,7 +111,8 @@ pub fn text(diagnosis: &AxisDiagnosis) -> String {
         Verdict::NoGap => writeln!(out, "No gap: nothing beyond noise and the tolerance of the parameters."),
         Verdict::Explained => writeln!(out, "Explained by:"),
         Verdict::PartlyExplained => writeln!(out, "Partly explained; {left:.1} % of the gap's power remains:"),
-        Verdict::Unexplained => writeln!(out, "A gap that no effect of the library explains."),
+        Verdict::Unexplained if named.is_empty() => writeln!(out, "A gap that no effect of the library explains."),
+        Verdict::Unexplained => writeln!(out, "A gap that no effect of the library explains; what fits it best:"),
         Verdict::CannotTell => writeln!(out, "Cannot tell: this, or one of the sets below:"),
     };
     for (found, sentence) in diagnosis.found.iter().zip(&named) {
@@ -121,7 +122,9 @@ pub fn text(diagnosis: &AxisDiagnosis) -> String {
         };
     }
     let own = own(diagnosis);
-    for set in diagnosis.alternatives.iter().take(4) {
+    let others: &[super::judge::Ranked] =
+        if diagnosis.verdict == Verdict::Unexplained { &[] } else { &diagnosis.alternatives };
+    for set in others.iter().take(4) {
         let instead: Vec<&str> = set.effects.iter().filter(|name| !own.contains(name)).map(String::as_str).collect();
         let of: Vec<&str> = own.iter().filter(|name| !set.effects.contains(name)).map(String::as_str).collect();
         if instead.is_empty() && of.is_empty() {
