@@ -2,6 +2,7 @@
 
     cargo build --release -p gimbal-cli && cargo build --release -p gimbal-gap --example log
     python3 gap/benches/peers/run.py            # prints the table of docs/benchmarks.md
+    python3 gap/benches/peers/run.py gimbal     # its rows of `gimbal gap` alone, without installing anything
 
 Peers are installed by pip into peers/ of the target folder, in the versions of requirements.txt. Every method is a process of its
 own; memory is its largest resident set. Compilation of the peers' simulation (numba) is not counted.
@@ -91,17 +92,22 @@ def least_squares(log, effect):
     return seconds, busy, memory, f"told: {values or '-'}", f"{own['before']:.1e} to {own['after']:.1e} rad"
 
 
+ALONE = sys.argv[1:] == ["gimbal"]
 METHODS = [
     ("`gimbal gap`", gimbal),
     ("pysindy STLSQ", sindy("STLSQ")),
     ("pysindy FROLS", sindy("FROLS")),
     ("`least_squares`, true model", least_squares),
 ]
+if ALONE:
+    METHODS = METHODS[:1]
 MODEL = TARGET / "peers" / "model.toml"
 
 
 def main():
-    set_up()
+    if not ALONE:
+        set_up()
+    MODEL.parent.mkdir(exist_ok=True)
     subprocess.run([TARGET / "release" / "gimbal", "model", "--out", MODEL], check=True, stdout=subprocess.DEVNULL)
     logs = TARGET / "peers" / "logs"
     logs.mkdir(exist_ok=True)
@@ -113,8 +119,9 @@ def main():
             example = TARGET / "release" / "examples" / "log"
             subprocess.run([example, excitation, str(SECONDS), str(seed), "0.6", *given], stdout=file, check=True)
         paths.append(path)
-    # the simulation is compiled once and kept
-    subprocess.run([sys.executable, HERE / "fit.py", paths[0], MODEL, "none"], check=True, stdout=subprocess.DEVNULL)
+    if not ALONE:
+        # the simulation is compiled once and kept
+        subprocess.run([sys.executable, HERE / "fit.py", paths[0], MODEL, "none"], check=True, stdout=subprocess.DEVNULL)
     print("| log | method | seconds | on processors | MB | effect | error before, after, on what was not fitted |")
     print("|---|---|---|---|---|---|---|")
     busy = {name: [] for name, _ in METHODS}
