@@ -74,6 +74,7 @@ impl Balance {
     pub(super) fn new(mut motion: Motion, model: &AxisModel) -> Self {
         let (found, rest) = plain(&motion);
         motion.needed = needed(&motion, if motion.stands { [0.0, 0.0, model.coulomb, 0.0] } else { found });
+        motion.size = rms(&motion.needed).max(1e-30);
         let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
         let effort = motion.raw(&motion.effort);
         let parameters = nominal(model);

@@ -91,6 +91,7 @@ fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Mot
         // an integrated rate loses the angle; the position column keeps it
         if let (MotionFrom::Velocity, Some(position), false) = (from, &log.position, scaled) {
             motion.q = motion.rest.apply(position);
+            motion.middle = motion.q.iter().sum::<f64>() / motion.q.len().max(1) as f64;
         }
         motion
     };
@@ -231,6 +232,7 @@ fn score(
         return Vec::new();
     }
     motion.needed = super::balance::needed(&motion, super::balance::plain(&balance.motion).0);
+    (motion.middle, motion.size) = (balance.motion.middle, balance.motion.size);
     let base: Vec<Vec<f64>> = super::library::NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
     let parameters = super::balance::nominal(model);
     let effort = motion.raw(&motion.effort);

@@ -422,10 +422,9 @@ pub(super) fn parameters(
         Shape::ViscousDrift { .. } => vec![amplitude("change", unit(1))],
         Shape::Spring => {
             let slack: Vec<Vec<f64>> = samples.iter().map(|s| vec![-s[1] / s[0]]).collect();
-            let middle = motion.q.iter().sum::<f64>() / motion.q.len().max(1) as f64;
             vec![
                 amplitude("stiffness", unit(0)),
-                new("neutral", middle - own[1] / own[0], deviation(&slack, 0), length.to_owned()),
+                new("neutral", motion.middle - own[1] / own[0], deviation(&slack, 0), length.to_owned()),
             ]
         }
         Shape::FrictionTaper => vec![amplitude("stiffness", unit(0))],

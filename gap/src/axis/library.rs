@@ -240,8 +240,7 @@ impl Shape {
             vec![by(&|i| carrier(i) * (k * m.q[i]).cos()), by(&|i| carrier(i) * (k * m.q[i]).sin())]
         };
         let warm = |time_s: f64, i: usize| 1.0 - (-m.time_s(i) / time_s).exp();
-        let size = rms(&m.needed).max(1e-30);
-        let middle = m.q.iter().sum::<f64>() / m.q.len() as f64;
+        let (size, middle) = (m.size, m.middle);
         match *self {
             Self::Inertia => vec![m.a.clone()],
             Self::Viscous => vec![m.v.clone()],

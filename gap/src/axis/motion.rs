@@ -47,6 +47,10 @@ pub(super) struct Motion {
     pub(super) s: Vec<f64>,
     /// Effort; held efforts moved to the middle of what they act over.
     pub(super) effort: Vec<f64>,
+    /// Middle of the positions and size of the effort needed, from which some shapes are counted: of the log that is
+    /// fitted, on any other too.
+    pub(super) middle: f64,
+    pub(super) size: f64,
     /// Effort that the parameters alone need: for effects that hang on the effort.
     pub(super) needed: Vec<f64>,
     pub(super) auxiliary: Vec<(String, Vec<f64>)>,
@@ -195,6 +199,8 @@ impl Motion {
             period_s,
             band_hz,
             rotary: model.motion == Kind::Rotary,
+            middle: q.iter().sum::<f64>() / q.len().max(1) as f64,
+            size: 1.0,
             needed: vec![0.0; v.len()],
             auxiliary: log.auxiliary.clone(),
             q,
