@@ -80,7 +80,8 @@ fn diagnosed(excitation: Excitation, seed: u64, seconds: f64, model: &ModelFile)
 fn gain(diagnosis: &gimbal_gap::Diagnosis) -> Option<String> {
     let (fit, decision) = (diagnosis.fit.as_ref()?, diagnosis.decision.as_ref()?);
     let [before, after] = decision.left_over;
-    Some(format!("square {:.1}, left over {before:.1} before, {after:.1} after", fit.square))
+    let goes_with = decision.goes_with().map_or_else(String::new, |stranger| format!(", goes with {stranger}"));
+    Some(format!("square {:.1}, left over {before:.1} before, {after:.1} after{goes_with}", fit.square))
 }
 
 fn main() {

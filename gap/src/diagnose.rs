@@ -223,12 +223,12 @@ fn contradicted(decision: &mut Decision, shrink: &Shrink) -> bool {
         ));
         decision.verdict = Verdict::Unexplained;
         decision.found.clear();
-        decision.alternatives.clear();
         decision.chosen = None;
         let unknown = decision.unknown_probability.max(0.9);
         let rest = (1.0 - unknown) / (1.0 - decision.unknown_probability).max(1e-9);
         decision.ranking.iter_mut().for_each(|set| set.probability *= rest);
         decision.unknown_probability = unknown;
+        decision.alternatives = decision.others();
     }
     contradicted
 }

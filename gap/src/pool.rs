@@ -135,7 +135,9 @@ fn sets(diagnoses: &[Diagnosis], logs: &[usize]) -> (Vec<PooledSet>, f64) {
 
 fn verdict(diagnoses: &[Diagnosis], logs: &[usize], sets: &[PooledSet], unknown: f64) -> Verdict {
     let Some(best) = sets.first() else { return Verdict::CannotTell };
-    let second = sets.get(1).map_or(0.0, |set| set.probability);
+    // a set that holds the best one and more is no rival
+    let rival = |set: &&PooledSet| best.effects.is_empty() || !best.effects.iter().all(|own| set.effects.contains(own));
+    let second = sets.iter().skip(1).find(rival).map_or(0.0, |set| set.probability);
     let is = |verdict| logs.iter().any(|&log| diagnoses[log].verdict() == verdict);
     if unknown > best.probability {
         Verdict::Unexplained

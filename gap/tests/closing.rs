@@ -70,7 +70,7 @@ fn closed_form_what_is_found_and_written_is_no_gap_any_more() {
         // The flight law with the corrected model follows the log.
         let (before, after) = (off_rad(&log, &ModelFile::default()), off_rad(&log, &model));
         println!("{name}: {:?}; theta off by {before:.2e} rad before, {after:.2e} rad after", names(&first));
-        assert!(after < 0.15 * before, "{name}: {before:.2e} to {after:.2e} rad");
+        assert!(after < 0.2 * before, "{name}: {before:.2e} to {after:.2e} rad");
     }
 }
 

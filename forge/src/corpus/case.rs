@@ -188,8 +188,7 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
         return Vec::new();
     }
     let projection = bench.projection();
-    let alone: Vec<Vec<f64>> =
-        effects.iter().map(|(effect, size, _)| bench.difference(&bench.world(effect, *size))).collect();
+    let alone: Vec<Vec<f64>> = effects.iter().map(|(effect, size, _)| bench.change(effect, *size)).collect();
     // what cannot be seen has no need of what it could be taken for
     let faint = effects.len() == 1 && projection.left_of(&alone[0]) < DETECTABLE;
     let tangents = if faint { Vec::new() } else { bench.tangents() };
@@ -203,8 +202,9 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
             } else {
                 let mut without = bench.base.clone();
                 for (index, (other, other_size, _)) in effects.iter().enumerate() {
-                    if index != place {
-                        other.apply(*other_size, &bench.scale, &mut without);
+                    let size = if index == place { Bench::no_gap(effect, *size) } else { *other_size };
+                    if size > 0.0 {
+                        other.apply(size, &bench.scale, &mut without);
                     }
                 }
                 bench.between(world, &without)

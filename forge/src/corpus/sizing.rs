@@ -150,8 +150,25 @@ impl<'a> Bench<'a> {
         shown.iter().flatten().all(|value| value.is_finite() && value.abs() < 2.0) && grown(0) < 400.0
     }
 
+    /// Of an effect's size, what is no gap by itself: a drifting parameter up to its tolerance, exactly, where the
+    /// sensitivities are but lines.
+    pub(super) fn no_gap(effect: &Effect, size: f64) -> f64 {
+        if !NAMES.contains(&effect.name) || matches!(effect.name, "viscous_friction" | "mass_unbalance") {
+            return 0.0;
+        }
+        size.min(drift::tolerance(effect.name))
+    }
+
+    /// Whitened change by an effect beyond that.
+    pub(super) fn change(&self, effect: &Effect, size: f64) -> Vec<f64> {
+        match Self::no_gap(effect, size) {
+            none if none <= 0.0 => self.difference(&self.world(effect, size)),
+            inside => self.between(&self.world(effect, size), &self.world(effect, inside)),
+        }
+    }
+
     fn d_of(&self, effect: &Effect, size: f64, projection: &Projection<'_>) -> f64 {
-        let left = projection.left_of(&self.difference(&self.world(effect, size)));
+        let left = projection.left_of(&self.change(effect, size));
         if left.is_finite() { left } else { f64::INFINITY }
     }
 

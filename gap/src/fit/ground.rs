@@ -131,6 +131,7 @@ impl<'a> Ground<'a> {
             path,
             turns_at_once,
             noise: self.noise.clone(),
+            ceiling_nm: self.offer.sees_torque.then_some(self.offer.peak_torque_nm),
             sigma,
         };
         problem.with_columns(&self.raw, &more)
@@ -160,7 +161,10 @@ impl<'a> Ground<'a> {
         let turned = self.turned.get_or_init(|| {
             Turning { record, base, begin: &self.begin, nominal, turns, scaled: &self.over_noise }.turned()
         });
-        let slips = Slips::new(turned, record, |signals| whitener.filter(signals));
+        // what the turns do is no noise of any frequency: that is measured again without it
+        let first = Slips::new(turned, record, rest, |signals| whitener.filter(signals));
+        let whitener = whitener.with_slips(first).measured_again(rest, behind);
+        let slips = Slips::new(turned, record, rest, |signals| whitener.filter(signals));
         whitener.with_slips(slips)
     }
 

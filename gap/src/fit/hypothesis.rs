@@ -41,7 +41,9 @@ pub(crate) struct Free {
     pub(crate) value: usize,
     /// Fitted in its logarithm.
     pub(crate) log: bool,
-    sigma: f64,
+    /// A size that has no scale of its own.
+    pub(crate) any_scale: bool,
+    pub(crate) sigma: f64,
     center: f64,
 }
 
@@ -202,7 +204,7 @@ fn free(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Vec<Free> {
                 // cycles and phases move little from where they were found
                 (if parameter.unit == "rad" { 1.0 } else { 0.02 * own.abs().max(1.0) }, own)
             };
-            all.push(Free { effect, value, log, sigma, center });
+            all.push(Free { effect, value, log, any_scale: size && !log, sigma, center });
         }
     }
     all

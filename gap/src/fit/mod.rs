@@ -27,7 +27,7 @@ pub(crate) use normal::{drive, slices, solve};
 pub use problem::{BLOCKS, Columns, Problem};
 pub use refine::{Effort, Fit, refine};
 pub use refit::{refit, without};
-pub use search::{Search, Set, search};
+pub use search::{Glimpse, Search, Set, search};
 pub(crate) use search::{null, search_from};
 pub(crate) use signals::{predicted, residual as raw_residual};
 pub use whiten::Whitener;

@@ -108,6 +108,15 @@ pub(crate) fn narrow(values: &[f64]) -> Vec<f32> {
     values.iter().map(|value| *value as f32).collect()
 }
 
+/// Standard errors over which a size may be anything.
+const ANY: f64 = 8.0;
+
+/// What a size's prior takes from the evidence beyond `ln 8`: a size has no scale of its own, so that effects whose
+/// realistic range is wide are not held to be less likely [nats].
+pub(super) fn of_any_scale(sigma: f64, error: f64) -> f64 {
+    (sigma / (ANY * error)).max(1.0).ln()
+}
+
 /// Fits chosen columns of normal equations.
 pub(crate) fn solve(
     gram: &DMatrix<f64>,

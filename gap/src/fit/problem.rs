@@ -4,14 +4,14 @@ use gimbal_model_file::ModelFile;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::Whitener;
 use super::ground::Ground;
 use super::normal::{gram, narrow, products, slices};
 use super::path::Path;
 use super::pull::Pull;
 use super::signals::{Kept, Signals, scaled};
+use super::{Fit, Whitener};
 use crate::library::{Candidate, Nuisance};
-use crate::record::Record;
+use crate::record::{Record, rough};
 use crate::simulate::{Begin, Physics};
 
 /// Time blocks.
@@ -69,6 +69,8 @@ pub struct Problem<'a> {
     pub turns_at_once: bool,
     /// Rms of the noise of each channel.
     pub noise: Vec<f64>,
+    /// Highest torque that was measured for some rows; none where it is not [N m].
+    pub ceiling_nm: Option<f64>,
     /// Prior standard deviations of the columns.
     pub sigma: Vec<f64>,
 }
@@ -90,8 +92,20 @@ impl<'a> Problem<'a> {
 
     /// The noise that the best fit leaves, over that of the sensors: what is more than the noise is known to is put
     /// down, in part, to how its effects are formulated.
-    pub(crate) fn formulation(&self, best_square: f64) -> f64 {
-        (FORMULATION * (best_square - NOISE_KNOWN * self.whitener.count() as f64)).max(1.0)
+    pub(crate) fn formulation(&self, best: &Fit) -> f64 {
+        let noise = self.roughness(&best.residual).max(1.0);
+        let excess = best.square - NOISE_KNOWN * noise * self.whitener.count() as f64;
+        (FORMULATION * excess).max(noise)
+    }
+
+    /// Power of what a residual does from row to row: that is noise, whatever effects leave.
+    fn roughness(&self, whitened: &[f64]) -> f64 {
+        let channels = self.record.channels.len();
+        let of = |channel: usize| -> f64 {
+            let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
+            rough(&series, &self.whitener.valid).powi(2)
+        };
+        (0..channels).map(of).sum::<f64>() / channels as f64
     }
 
     /// Whitened residual of a prediction.

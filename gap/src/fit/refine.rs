@@ -5,7 +5,7 @@ use gimbal_plant::Effect;
 
 use super::hypothesis::{Hypothesis, Outcome, Point};
 use super::linear::{Equations, Linear};
-use super::normal::Solution;
+use super::normal::{Solution, of_any_scale};
 use super::pull::Pull;
 use super::{Problem, Set};
 use crate::simulate::{Begin, Physics, Prediction};
@@ -227,6 +227,7 @@ fn finish(hypothesis: &Hypothesis, point: Point, outcome: Outcome, last: Option<
     let Point { mut values, shifts, .. } = point;
     let mut errors: Vec<Vec<f64>> = values.iter().map(|values| vec![0.0; values.len()]).collect();
     let mut volume = f64::NEG_INFINITY;
+    let mut scale_free = 0.0;
     let mut sensitivities = Vec::new();
     if let Some((solution, columns)) = last {
         let sigma = |column: usize| solution.covariance[(column, column)].max(0.0).sqrt();
@@ -234,6 +235,9 @@ fn finish(hypothesis: &Hypothesis, point: Point, outcome: Outcome, last: Option<
             let sigma = sigma(hypothesis.fixed() + index);
             errors[free.effect][free.value] =
                 if free.log { sigma * values[free.effect][free.value].abs() } else { sigma };
+            if free.any_scale {
+                scale_free += of_any_scale(free.sigma, sigma);
+            }
         }
         for (effect, &index) in set.0.iter().enumerate() {
             for (place, release) in problem.candidates[index].releases.iter().enumerate() {
@@ -246,7 +250,7 @@ fn finish(hypothesis: &Hypothesis, point: Point, outcome: Outcome, last: Option<
             }
         }
         let walls = Pull::new(problem, &hypothesis.precision, &shifts).walls;
-        volume = solution.evidence - 0.5 * solution.gain - walls;
+        volume = solution.evidence - 0.5 * solution.gain - walls + scale_free;
         sensitivities = columns;
     }
     for &index in &set.0 {

@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::normal::{drive, slices, solve};
+use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::refine::Effort;
 use super::refit::rebase;
+use super::signals::peak;
 use super::{Fit, Problem, refine};
 
 /// A set of candidates, by index.
@@ -19,11 +20,26 @@ pub struct Search {
     pub null: Fit,
     /// Sets, the most probable first.
     pub fits: Vec<Fit>,
+    /// Every effect by itself beside the nominal parameters, by the linear equations there, the best first.
+    pub glimpses: Vec<Glimpse>,
+}
+
+/// What an effect would add to the nominal parameters, without a fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Glimpse {
+    /// Its candidate.
+    pub index: usize,
+    /// Linear evidence over the nominal parameters [nats].
+    pub gain: f64,
 }
 
 /// Refined singles, and refined extensions of each of the best.
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
+/// Least share of the size at which an effect is tried that it may have.
+const LEAST_SECANT: f64 = 0.003;
+/// A predicted torque that comes so near the highest that was measured, over it, may have met a ceiling.
+const NEAR: f64 = 0.98;
 /// Evidence that an extension must promise to be looked at [nats].
 const PROMISE: f64 = 8.0;
 /// The same for a nominal parameter beyond its tolerance.
@@ -39,7 +55,7 @@ pub fn search(problem: &mut Problem) -> Search {
 /// The same from the fit of the nominal parameters alone.
 pub(crate) fn search_from(problem: &mut Problem, null: Fit) -> Search {
     rebase(problem, &null);
-    let mut fits = sets(problem, &null);
+    let (mut fits, glimpses) = sets(problem, &null);
     if let Some(best) = fits.first() {
         rebase(problem, best);
     }
@@ -53,7 +69,7 @@ pub(crate) fn search_from(problem: &mut Problem, null: Fit) -> Search {
     sort(problem, &mut fits);
     without_idle(problem, &mut fits);
     let null = from_there(problem, null, &fits);
-    Search { null, fits }
+    Search { null, fits, glimpses }
 }
 
 /// The nominal parameters alone.
@@ -61,13 +77,16 @@ pub(crate) fn null(problem: &Problem) -> Fit {
     refine(problem, &Set::default(), &[], None, Effort::Thorough)
 }
 
-/// Singles, and pairs and triples from the best of them, the best first.
-fn sets(problem: &Problem, null: &Fit) -> Vec<Fit> {
+/// Singles, and pairs and triples from the best of them, the best first; and what singles were chosen from.
+fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
     let mut fits = Vec::new();
-    let first = best_by_effect(problem, extensions(problem, null), SINGLES);
+    let first = best_by_effect(problem, extensions(problem, null), usize::MAX);
+    let glimpses = first.iter().map(|extension| Glimpse { index: extension.index, gain: extension.gain }).collect();
+    fits.extend(saturated(problem, null));
     fits.par_extend(
         first
             .par_iter()
+            .take(SINGLES)
             .filter(|extension| promising(problem, extension))
             .map(|extension| extend(problem, null, extension)),
     );
@@ -91,7 +110,15 @@ fn sets(problem: &Problem, null: &Fit) -> Vec<Fit> {
         }
         sort(problem, &mut fits);
     }
-    fits
+    (fits, glimpses)
+}
+
+/// A ceiling of the torque changes everything where it is reached: equations that are linear below it do not lead there.
+fn saturated(problem: &Problem, null: &Fit) -> Option<Fit> {
+    let ceiling_nm = problem.ceiling_nm.filter(|ceiling| peak(&null.prediction.motor_torque_nm) > NEAR * ceiling)?;
+    let index = problem.candidates.iter().position(|candidate| candidate.effect == "torque_saturation")?;
+    let fit = refine(problem, &Set(vec![index]), &[vec![ceiling_nm]], Some(null), Effort::Quick);
+    Some(fit).filter(|fit| fit.square < null.square - PROMISE)
 }
 
 /// The best fit may have found a way down that the nominal parameters missed: they start there once more.
@@ -154,7 +181,8 @@ fn promising(problem: &Problem, extension: &Extension) -> bool {
 
 /// By evidence under the noise that the best of them leaves.
 fn sort(problem: &Problem, fits: &mut [Fit]) {
-    let temper = problem.formulation(fits.iter().map(|fit| fit.square).fold(f64::MAX, f64::min));
+    let Some(best) = fits.iter().min_by(|a, b| a.square.total_cmp(&b.square)) else { return };
+    let temper = problem.formulation(best);
     fits.sort_by(|a, b| b.evidence(temper).total_cmp(&a.evidence(temper)));
 }
 
@@ -223,9 +251,12 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
                 && candidate.effect != "presliding"
                 && candidate.effect != "dead_zone"
                 && candidate.effect != "torque_saturation"
-                || amplitudes.first().is_some_and(|amplitude| *amplitude > 0.1 && *amplitude < 8.0);
+                || amplitudes.first().is_some_and(|amplitude| *amplitude > LEAST_SECANT && *amplitude < 8.0);
+            let sizes = (wide.len() - candidate.probes.len()..wide.len()).zip(&candidate.prior);
+            let scale_free: f64 =
+                sizes.map(|(place, (_, sigma))| of_any_scale(*sigma, solution.covariance[(place, place)].sqrt())).sum();
             let gain = if sane {
-                solution.evidence - base - released - (candidate.siblings as f64).ln()
+                solution.evidence + scale_free - base - released - (candidate.siblings as f64).ln()
             } else {
                 f64::NEG_INFINITY
             };

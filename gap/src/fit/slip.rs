@@ -9,6 +9,10 @@
 //!
 //! one block after the other, a' = a after the blocks before it: what comes out is white (Potter's square root).
 //! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant.
+//!
+//! What the logged rate does from row to row says how large s may be: some of that is motion. A residual r says how
+//! large it is: `-2 ln L = |x|^2 + sum ln(1 + |a'|^2)`, x what comes out of r. Of the sizes that are as likely as the
+//! likeliest one, the largest is taken.
 
 use rayon::prelude::*;
 
@@ -31,6 +35,11 @@ const NOTHING: f64 = 1e-7;
 const TOGETHER: usize = 16;
 /// A block that adds less than this to the variance of the noise is none.
 const LEAST: f64 = 1e-3;
+/// Sizes of the noise that are tried: each is this share of the one before.
+const SMALLER: f64 = 0.6;
+const SIZES: usize = 12;
+/// Twice the logarithm by which likelihoods differ that are alike.
+const ALIKE: f64 = 4.0;
 
 /// Rows of a block.
 type Block = std::ops::Range<usize>;
@@ -47,6 +56,8 @@ struct Pulse {
     values: Vec<f32>,
     /// k.
     share: f64,
+    /// |a'|^2.
+    square: f64,
 }
 
 /// Blocks, and what a change of their rate by 1 rad/s does, over the noise, before any filter: those that are far from each other in
@@ -74,15 +85,51 @@ impl Slips {
         self.0.iter().for_each(|pulse| pulse.apply(0, whitened));
     }
 
-    /// From the blocks as each shows after the filter of frequencies.
-    pub(crate) fn new(turned: &Turned, record: &Record, filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Self {
-        let mut slips = Self::default();
-        let shown = turned.shown(record.channels.len(), filter);
-        for (block, (first, mut values)) in turned.blocks.iter().zip(shown) {
+    /// From the blocks as each shows after the filter of frequencies, of the size that a residual speaks for.
+    pub(crate) fn new(
+        turned: &Turned,
+        record: &Record,
+        residual: &Signals,
+        filter: impl Fn(&Signals) -> Vec<f64> + Sync,
+    ) -> Self {
+        if turned.blocks.is_empty() {
+            return Self::default();
+        }
+        let residual = filter(residual);
+        let mut shown = turned.shown(record.channels.len(), filter);
+        for (block, (_, values)) in turned.blocks.iter().zip(&mut shown) {
             let sigma = record.rate_noise.of_mean(block.len());
-            for value in &mut values {
+            for value in values.iter_mut() {
                 *value *= sigma;
             }
+        }
+        let mut tried: Vec<(f64, Self)> = Vec::new();
+        let mut least = f64::MAX;
+        for size in std::iter::successors(Some(1.0), |size| Some(SMALLER * size)).take(SIZES) {
+            let slips = Self::of_size(&shown, size);
+            let unlikely = slips.unlikely(&residual);
+            least = least.min(unlikely);
+            tried.push((unlikely, slips));
+            if unlikely > least + 2.0 * ALIKE {
+                break;
+            }
+        }
+        let alike = tried.into_iter().find(|(unlikely, _)| *unlikely <= least + ALIKE);
+        alike.map(|(_, slips)| slips).unwrap_or_default()
+    }
+
+    /// `-2 ln L` of a residual, up to a constant.
+    fn unlikely(&self, filtered: &[f64]) -> f64 {
+        let mut whitened = filtered.to_vec();
+        self.apply(&mut whitened);
+        let square: f64 = whitened.iter().map(|value| value * value).sum();
+        square + self.0.iter().map(|pulse| (1.0 + pulse.square).ln()).sum::<f64>()
+    }
+
+    fn of_size(shown: &[(usize, Vec<f64>)], size: f64) -> Self {
+        let mut slips = Self::default();
+        for (first, values) in shown {
+            let (first, mut values) = (*first, values.iter().map(|value| size * value).collect::<Vec<f64>>());
             // what the blocks before it leave
             for pulse in &slips.0 {
                 pulse.apply(first, &mut values);
@@ -90,7 +137,7 @@ impl Slips {
             let square: f64 = values.iter().map(|value| value * value).sum();
             if square > LEAST {
                 let (ends, share) = (over(&values, NOTHING * square), (1.0 - 1.0 / (1.0 + square).sqrt()) / square);
-                slips.0.push(Pulse { first: first + ends.start, values: narrow(&values[ends]), share });
+                slips.0.push(Pulse { first: first + ends.start, values: narrow(&values[ends]), share, square });
             }
         }
         slips

@@ -114,6 +114,27 @@ impl Whitener {
         Self { noise, valid: valid.to_vec(), gains, turning_gains, turning, slips: Slips::default(), plans }
     }
 
+    /// The same with the filter fitted to what this one makes white.
+    pub(crate) fn measured_again(mut self, residual: &[Vec<f64>], behind: Loop) -> Self {
+        let (channels, whitened) = (residual.len(), self.apply(residual));
+        let step_hz = 1.0 / (self.plans.length() as f64 * behind.period_s);
+        for (channel, impulse) in behind.impulse.iter().enumerate() {
+            let response: Vec<f64> = self.plans.lines(impulse.iter().copied()).iter().map(Complex::norm_sqr).collect();
+            let shape = |hz: f64| between(&response, hz / step_hz);
+            let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
+            let mut bands = Bands::new(&series, &self.valid, Of::Most, behind.period_s);
+            for (power, &hz) in bands.power.iter_mut().zip(&bands.hz) {
+                *power *= self.noise[channel].power(hz, shape(hz));
+            }
+            let own = bands.fit(&shape);
+            let of = |(line, response): (usize, &f64)| own.power(line as f64 * step_hz, *response);
+            self.gains[channel] =
+                response.iter().enumerate().map(of).map(|power| 1.0 / power.max(LEAST_POWER).sqrt()).collect();
+            self.noise[channel] = own;
+        }
+        self
+    }
+
     /// The same with what whitens the noise of the rate turn by turn.
     pub(crate) fn with_slips(self, slips: Slips) -> Self {
         Self { slips, ..self }
@@ -240,7 +261,7 @@ impl Bands {
             let median = (1.0 - 2.0 / (9.0 * n.max(1.0))).powi(3);
             bands.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
             bands.power.push(match of {
-                Of::Most => means[means.len() / 2] / median,
+                Of::Most => 0.5 * (means[(means.len() - 1) / 2] + means[means.len() / 2]) / median,
                 Of::All => means.iter().sum::<f64>() / means.len() as f64,
             });
             bands.weight.push(n * segments.len() as f64);

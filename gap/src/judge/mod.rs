@@ -8,10 +8,13 @@ mod decide;
 mod detectable;
 mod experiment;
 mod left_over;
+mod lines;
 mod portrait;
 mod shrink;
 mod strange;
+mod stretch;
 mod torques;
+mod weigh;
 
 pub(crate) use closed_loop::in_step;
 pub use closed_loop::{Yardstick, free_running, one_step};

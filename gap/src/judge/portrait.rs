@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::DVector;
 
-use super::decide::names;
+use super::weigh::names;
 use crate::fit::{Fit, Problem, drive, raw_residual, slices, solve};
 use crate::place::{Band, Regime, Spectrum, block_shares, regimes};
 use crate::record::Signal;

@@ -26,13 +26,15 @@ pub struct Stranger {
     pub gain: f64,
     /// Number of torques.
     pub torques: usize,
+    /// What choosing them among others costs [nats].
+    pub choice: f64,
 }
 
 impl Stranger {
     /// Beyond chance [nats].
     #[must_use]
     pub fn nats(&self) -> f64 {
-        0.5 * (self.gain - self.torques as f64)
+        0.5 * (self.gain - self.torques as f64) - self.choice
     }
 }
 
@@ -69,7 +71,12 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let base = gain(&[]);
     let mut strangers: Vec<Stranger> = groups(problem, fit)
         .into_par_iter()
-        .map(|(of, torques)| Stranger { of, gain: gain(&torques) - base, torques: torques.len() })
+        .map(|group| Stranger {
+            of: group.of,
+            gain: gain(&group.torques) - base,
+            torques: group.torques.len(),
+            choice: group.choice,
+        })
         .collect();
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
     strangers

@@ -1,5 +1,6 @@
 //! Torques that an effect might be, in groups by what they are functions of.
 
+use super::lines::line;
 use crate::fit::{Fit, Problem};
 
 /// Rms of each torque [N m].
@@ -14,16 +15,30 @@ const HEAT_S: f64 = 5.0;
 const SOFT: f64 = 0.02;
 
 type Series = Vec<f64>;
-type Group = (&'static str, Vec<Series>);
+type Functions = (&'static str, Vec<Series>);
+
+/// Torques that are functions of the same.
+pub(crate) struct Group {
+    /// What of.
+    pub(crate) of: &'static str,
+    pub(crate) torques: Vec<Series>,
+    /// What their choice among others costs [nats].
+    pub(crate) choice: f64,
+}
 
 /// Every group at a fit.
 pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     let motion = Motion::new(problem, fit);
-    let mut groups = motion.of_angle_and_time();
-    groups.extend(motion.of_slip());
-    groups.extend(motion.of_motor());
-    groups.extend(motion.of_specific_force());
-    for torque in groups.iter_mut().flat_map(|(_, group)| group) {
+    let mut functions = motion.of_angle_and_time();
+    functions.extend(motion.of_slip());
+    functions.extend(motion.of_motor());
+    functions.extend(motion.of_specific_force());
+    let mut groups: Vec<Group> =
+        functions.into_iter().map(|(of, torques)| Group { of, torques, choice: 0.0 }).collect();
+    let drive = problem.path.drive(&problem.whitener, &fit.residual);
+    let tone = line(problem, &drive);
+    groups.extend(tone.map(|line| Group { of: "a line in time", torques: line.torques, choice: line.choice }));
+    for torque in groups.iter_mut().flat_map(|group| &mut group.torques) {
         *torque = scaled(torque).iter().map(|value| UNIT_NM * value).collect();
     }
     groups
@@ -69,7 +84,7 @@ impl<'a> Motion<'a> {
         }
     }
 
-    fn of_angle_and_time(&self) -> Vec<Group> {
+    fn of_angle_and_time(&self) -> Vec<Functions> {
         vec![
             ("gimbal angle", series(&self.angle, 8)),
             ("gimbal angle and direction", each(&self.sign, &series(&self.angle, 5))),
@@ -80,7 +95,7 @@ impl<'a> Motion<'a> {
         ]
     }
 
-    fn of_slip(&self) -> Vec<Group> {
+    fn of_slip(&self) -> Vec<Functions> {
         let mut rates: Vec<Series> = [0.33, 0.66, 1.0, 2.0].map(|exponent| odd(&self.slip, exponent)).to_vec();
         rates.extend([0.5, 1.0, 2.0].map(|exponent| even(&self.slip, exponent)));
         rates.push(self.sign.clone());
@@ -88,7 +103,7 @@ impl<'a> Motion<'a> {
         vec![("slip rate", rates), ("load", each(&self.sign, &loads))]
     }
 
-    fn of_motor(&self) -> Vec<Group> {
+    fn of_motor(&self) -> Vec<Functions> {
         let torque = &self.torque;
         let soft = torque.iter().map(|value| (value / SOFT).clamp(-1.0, 1.0)).collect();
         let shapes = vec![even(torque, 1.0), even(torque, 2.0), odd(torque, 2.0), odd(torque, 3.0), soft];
@@ -101,7 +116,7 @@ impl<'a> Motion<'a> {
         ]
     }
 
-    fn of_specific_force(&self) -> Vec<Group> {
+    fn of_specific_force(&self) -> Vec<Functions> {
         let [x, y, z] = &self.accel;
         let mut forces = vec![x.clone(), y.clone(), z.clone()];
         forces.extend([(x, y), (y, z), (z, x), (x, x), (y, y), (z, z)].map(|(a, b)| product(a, b)));

@@ -57,7 +57,6 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         // the pick-off shows the stop itself, and its steps
         "stop_angle" | "pickoff_quantisation" => Vec::new(),
         _ if !releases(name).is_empty() => vec![released(effect, releases(name))],
-        "float_torque" if !offer.sees_gimbal => Vec::new(),
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
         "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),
@@ -180,7 +179,7 @@ impl Candidate {
         match self.effect {
             // a higher limit shows less
             "torque_saturation" => (1.0 + 0.02 * (1.0 - amplitude)).clamp(0.97, 1.02),
-            _ => amplitude.clamp(0.2, 4.0),
+            _ => amplitude.clamp(0.003, 4.0),
         }
     }
 }

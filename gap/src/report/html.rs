@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::picture::{Line, SCRIPT, Tube, chart, plot, thinned};
 use crate::diagnose::Diagnosis;
 use crate::fit::{predicted, raw_residual};
+use crate::judge::Verdict;
 use crate::judge::experiment;
 
 pub(crate) const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
@@ -85,7 +86,7 @@ fn signals(out: &mut String, diagnosis: &Diagnosis) {
 
 /// What could not be told apart, and what would tell it.
 fn told_apart(out: &mut String, diagnosis: &Diagnosis) {
-    let Some(decision) = diagnosis.decision.as_ref().filter(|decision| !decision.alternatives.is_empty()) else {
+    let Some(decision) = diagnosis.decision.as_ref().filter(|decision| decision.verdict == Verdict::CannotTell) else {
         return;
     };
     let own = decision.found.first().map_or("", |found| found.effect);

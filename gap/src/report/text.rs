@@ -5,7 +5,10 @@ use std::fmt::Write;
 use gimbal_plant::Effect;
 
 use crate::diagnose::Diagnosis;
-use crate::judge::{Decision, Verdict, experiment};
+use crate::judge::{Decision, SetProbability, Verdict, experiment};
+
+/// Least probability of another set that the verdict tells of.
+const WORTH_A_WORD: f64 = 0.05;
 
 /// The verdict in words.
 #[must_use]
@@ -36,17 +39,7 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         }
         Verdict::CannotTell => writeln!(out, "Cannot tell: {} or one of these:", named.join(" and ")),
     };
-    for set in &decision.alternatives {
-        let own = decision.found.first().map_or("", |found| found.effect);
-        let other = set.effects.iter().find(|effect| !decision.found.iter().any(|found| found.effect == **effect));
-        let told = experiment(own, other.copied().unwrap_or_default());
-        let _ = writeln!(
-            out,
-            "  {} ({:.0} %); to tell them apart: {told}",
-            set.effects.join(" + "),
-            100.0 * set.probability
-        );
-    }
+    let _ = write!(out, "{}", beside(decision));
     if let Some(portrait) = &diagnosis.portrait {
         let _ = writeln!(out, "  {}", portrait.told());
     }
@@ -78,6 +71,27 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         );
     }
     out.trim_end().to_owned()
+}
+
+/// The class that cannot be told apart, or what else is possible.
+fn beside(decision: &Decision) -> String {
+    let own = decision.found.first().map_or("", |found| found.effect);
+    let set = |set: &SetProbability| {
+        let name = if set.effects.is_empty() { "nothing".to_owned() } else { set.effects.join(" + ") };
+        format!("{name} ({:.0} %)", 100.0 * set.probability)
+    };
+    if decision.verdict == Verdict::CannotTell {
+        let line = |own_set: &SetProbability| {
+            let other =
+                own_set.effects.iter().find(|&&effect| decision.found.iter().all(|found| found.effect != effect));
+            let told = experiment(own, other.copied().unwrap_or_default());
+            format!("  {}; to tell them apart: {told}\n", set(own_set))
+        };
+        return decision.alternatives.iter().map(line).collect();
+    }
+    let possible: Vec<String> =
+        decision.alternatives.iter().filter(|own| own.probability > WORTH_A_WORD).take(4).map(set).collect();
+    if possible.is_empty() { String::new() } else { format!("  not excluded: {}\n", possible.join(", ")) }
 }
 
 /// How far what is left stands out, and what it goes with.

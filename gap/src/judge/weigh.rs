@@ -1,0 +1,151 @@
+//! What every set of effects is worth: its evidence, less what speaks against it.
+
+use gimbal_model_file::Tolerance;
+use gimbal_plant::{Bound, Effect, Parameter};
+
+use super::stretch::carried_alone;
+use crate::fit::{Fit, Problem, Search};
+
+/// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
+const COST: f64 = 18.0;
+const COST_OF_SHIFT: f64 = 11.0;
+/// What it costs in probability, from logs with open answers [nats].
+const RARE: f64 = 12.0;
+const RARE_SHIFT: f64 = 8.0;
+/// The same for every effect beside the first, on top.
+const RARE_BESIDE: f64 = 5.0;
+/// A parameter at the end of its range [nats].
+const BOUND_HIT: f64 = 20.0;
+/// A nominal parameter is an effect from this many tolerances on.
+pub(super) const BEYOND: f64 = 1.15;
+/// Least share of the gap that an effect takes away.
+const LEAST_SHARE: f64 = 0.003;
+/// What an effect must take away to be there when its size is not known to be more than zero [nats].
+const HELPS: f64 = 12.0;
+/// What rules a set out [nats].
+const NEVER: f64 = 1e3;
+
+/// A set of effects.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Weighed {
+    /// Names, in alphabetical order.
+    pub(crate) effects: Vec<&'static str>,
+    /// Its fit; none where only the linear equations were looked at.
+    pub(crate) fit: Option<usize>,
+    /// Evidence over the nominal parameters, less what speaks against it [nats].
+    pub(crate) nats: f64,
+    /// What it must bring to be named [nats].
+    pub(crate) cost: f64,
+    /// What it costs in probability [nats].
+    pub(crate) rare: f64,
+}
+
+/// Every set that was fitted, in their order, then every effect that was only glimpsed.
+pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Vec<Weighed> {
+    let closest = search.fits.iter().fold(&search.null, |best, fit| if fit.square < best.square { fit } else { best });
+    let temper = problem.formulation(closest);
+    let mut all: Vec<Weighed> = search
+        .fits
+        .iter()
+        .enumerate()
+        .map(|(index, fit)| {
+            let evidence = fit.evidence(temper) - search.null.evidence(temper) - alone(search, fit) / temper;
+            let (cost, rare) = costs(problem, &fit.set.0);
+            let nats = evidence - against(problem, search, fit, tolerance);
+            Weighed { effects: names(problem, fit), fit: Some(index), nats, cost, rare }
+        })
+        .collect();
+    // what a set has more than a smaller one must be worth it
+    let excess = (search.null.square - closest.square).max(1.0);
+    for (index, fit) in search.fits.iter().enumerate() {
+        for (other, smaller) in search.fits.iter().enumerate() {
+            let worthless = is_part(smaller, fit) && smaller.square - fit.square < LEAST_SHARE * excess;
+            let most = all[other].nats - all[other].cost + all[index].cost - 1.0;
+            if worthless && all[index].nats > most {
+                all[index].nats = most;
+            }
+        }
+    }
+    for glimpse in &search.glimpses {
+        let effect = problem.candidates[glimpse.index].effect;
+        if !all.iter().any(|set| set.effects == [effect]) {
+            let (cost, rare) = costs(problem, &[glimpse.index]);
+            all.push(Weighed { effects: vec![effect], fit: None, nats: glimpse.gain / temper, cost, rare });
+        }
+    }
+    all
+}
+
+/// Names of a fit's effects, in order.
+pub(crate) fn names(problem: &Problem, fit: &Fit) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = fit.set.0.iter().map(|&index| problem.candidates[index].effect).collect();
+    names.sort_unstable();
+    names
+}
+
+fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
+    let shifts = set.iter().filter(|&&index| !problem.candidates[index].releases.is_empty()).count() as f64;
+    let added = set.len() as f64 - shifts;
+    let beside = RARE_BESIDE * (set.len() as f64 - 1.0).max(0.0);
+    (COST * added + COST_OF_SHIFT * shifts, RARE * added + RARE_SHIFT * shifts + beside)
+}
+
+fn is_part(smaller: &Fit, larger: &Fit) -> bool {
+    smaller.set.0.len() < larger.set.0.len() && smaller.effects.iter().all(|effect| larger.effects.contains(effect))
+}
+
+/// What one stretch of the log carries alone, against the nominal parameters and against all but one of the effects.
+fn alone(search: &Search, fit: &Fit) -> f64 {
+    let smaller = search.fits.iter().filter(|other| is_part(other, fit) && other.set.0.len() + 1 == fit.set.0.len());
+    smaller.chain([&search.null]).map(|smaller| carried_alone(smaller, fit)).fold(0.0, f64::max)
+}
+
+/// What speaks against a set: an effect of no size, a shape beyond its range, a parameter inside its tolerance.
+fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: &Tolerance) -> f64 {
+    let of = |(place, &index): (usize, &usize)| {
+        let candidate = &problem.candidates[index];
+        let (values, errors) = (&fit.values[place], &fit.errors[place]);
+        let idle = if fit.is_idle(place) && !helps(search, fit, place) { NEVER } else { 0.0 };
+        idle + if candidate.releases.is_empty() {
+            at_a_bound(candidate.effect, values, errors)
+        } else if beyond(problem, tolerance, candidate.effect, values, errors) {
+            0.0
+        } else {
+            NEVER
+        }
+    };
+    fit.set.0.iter().enumerate().map(of).sum()
+}
+
+/// Whether a fit is worth more with an effect than without it, though size and shape stand for each other.
+fn helps(search: &Search, fit: &Fit, place: usize) -> bool {
+    let without = |other: &&Fit| {
+        other.set.0.len() + 1 == fit.set.0.len() && is_part(other, fit) && !other.effects.contains(&fit.effects[place])
+    };
+    let alone = fit.set.0.len() == 1;
+    let mut smaller = search.fits.iter().filter(without).chain(alone.then_some(&search.null)).peekable();
+    smaller.peek().is_some() && smaller.all(|smaller| smaller.square - fit.square > 2.0 * HELPS)
+}
+
+/// What a shape beyond its realistic range by more than its error costs: a cable's loop as long as the motion is a
+/// spring.
+fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
+    let Some(effect) = Effect::from_name(effect) else { return 0.0 };
+    let shapes = effect.parameters().iter().zip(values.iter().zip(errors)).skip(effect.sizes());
+    let outside = |(parameter, (value, error)): (&Parameter, (&f64, &f64))| {
+        let factor = (2.0 * error / value.abs().max(1e-30)).min(2.0).exp();
+        parameter.bound != Bound::Any && (value * factor < parameter.low || value / factor > parameter.high)
+    };
+    if shapes.into_iter().any(outside) { BOUND_HIT } else { 0.0 }
+}
+
+/// Whether a nominal parameter is beyond its tolerance by more than its own error.
+fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, values: &[f64], errors: &[f64]) -> bool {
+    let scale = if effect == "mass_unbalance" {
+        let unbalance = &problem.base.config.unbalance;
+        unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6)
+    } else {
+        1.0
+    };
+    values.iter().zip(errors).any(|(value, error)| value.abs() - error > BEYOND * tolerance.of(effect) * scale)
+}
