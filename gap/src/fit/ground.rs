@@ -189,7 +189,6 @@ fn offer(record: &Record, nominal: &Prediction) -> Offer<'static> {
             .channel(Signal::MotorTorque)
             .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| high(&channel.values)),
         cycles: &[],
-        sees_gimbal: sees(Signal::GimbalAngle),
         sees_torque: sees(Signal::MotorTorque),
         sees_cross: !record.inputs.cross_radps.is_empty(),
     }

@@ -11,7 +11,7 @@ use super::{Problem, Set};
 use crate::simulate::{Begin, Physics, Prediction};
 
 /// Steps of one iteration: as the equations have it, then damped more and more.
-const TRIALS: usize = 5;
+const TRIALS: usize = 9;
 /// Damping after the first step that failed, over the precision of the priors.
 const LEAST_DAMPING: f64 = 3.0;
 /// What a step must promise for sensitivities to be taken anew [nats].

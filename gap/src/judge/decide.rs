@@ -18,7 +18,7 @@ const RIVAL: f64 = 0.1;
 /// Least probability that is reported.
 const POSSIBLE: f64 = 0.002;
 /// Standard deviations that what is left may stand out by, and the spread of that limit.
-const LEFT_OVER: f64 = 13.0;
+const LEFT_OVER: f64 = 16.0;
 const LEFT_OVER_SCALE: f64 = 2.0;
 /// What torques of no effect may take of it beyond chance, and the spread of that limit [nats].
 const STRANGE: f64 = 24.0;

@@ -30,8 +30,6 @@ pub struct Offer<'a> {
     pub peak_torque_nm: f64,
     /// Cycles a revolution at which the torque residual has lines.
     pub cycles: &'a [f64],
-    /// Whether phi is measured.
-    pub sees_gimbal: bool,
     /// Whether the motor torque is measured.
     pub sees_torque: bool,
     /// Whether the cross rate is.
@@ -61,7 +59,7 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
         "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),
         "friction_drift" => grid(effect, &[0.12, 0.4, 1.3].map(|share| vec![0.1, share * seconds])),
-        "cable_hysteresis" => grid(effect, &[0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])),
+        "cable_hysteresis" => grid(effect, &[0.0015, 0.005, 0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])),
         "flexible_mode" => grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, 0.03])),
         "presliding" => secants(effect, &[3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along])),
         "loop_delay" => secants(effect, &[3e-5, 2e-4].map(|delay_s| vec![delay_s])),
