@@ -25,9 +25,16 @@ impl Digest {
         }
     }
 
+    /// Adds the bits of signals.
+    pub fn add_signals<N: Number>(&mut self, signals: &[N]) {
+        for signal in signals {
+            self.add(&signal.to_bits().to_le_bytes());
+        }
+    }
+
     /// Adds all signals and bits of an output.
     pub fn add_output<N: Number>(&mut self, output: &Output<N>) {
-        let signals = [
+        self.add_signals(&[
             output.gimbal_angle_rad,
             output.gimbal_rate_radps,
             output.gyro_angle_rad,
@@ -37,10 +44,7 @@ impl Digest {
             output.disturbance_torque_nm,
             output.relative_rate_radps,
             output.stop_change_age,
-        ];
-        for signal in signals {
-            self.add(&signal.to_bits().to_le_bytes());
-        }
+        ]);
         let stop = match output.stop {
             Stop::Free => 0,
             Stop::Positive => 1,

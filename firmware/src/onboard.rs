@@ -102,17 +102,14 @@ impl<N: Number> Told<N> {
     pub fn digest(&self, digest: &mut Digest) {
         digest.add_output(&self.output);
         let Self { estimate, report, .. } = self;
-        let signals = [
+        digest.add_signals(&[
             estimate.gimbal_angle_rad,
             estimate.bound_rad,
             estimate.disturbance_torque_nm,
             estimate.innovation_rad,
             report.residual_rad,
             report.score,
-        ];
-        for signal in signals {
-            digest.add(&signal.to_bits().to_le_bytes());
-        }
+        ]);
         digest.add(&estimate.flags.bits().to_le_bytes());
         digest.add(&[u8::from(report.disagrees), report.regime as u8]);
     }
