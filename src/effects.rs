@@ -22,6 +22,7 @@ use crate::number::Number;
 use crate::row::ScaledRow;
 use crate::signals::{Input, Output};
 use crate::state::{Regime, State as AxisState};
+use crate::stored::stored;
 
 /// Largest rel that is told apart [rad].
 const LARGEST_ANGLE_RAD: f64 = 64.0;
@@ -61,6 +62,8 @@ pub struct Law<N: Number> {
     axis: crate::Law<N>,
     constant: N,
     spring: ScaledRow<N, 1>,
+    /// From the full scale of phi to that of rel.
+    angle_shift: u32,
     /// rel over a period, of both ends' rates added.
     turn: ScaledRow<N, 1>,
     viscous: ScaledRow<N, 1>,
@@ -87,6 +90,11 @@ pub struct Law<N: Number> {
     pickoff_scale: ScaledRow<N, 1>,
     pickoff_bias: N,
 }
+
+stored!([N: Number] Law<N> {
+    axis, constant, spring, angle_shift, turn, viscous, quadratic, rate_share, anisoelasticity, accel_share, stribeck,
+    stribeck_share, late, late_torque, delayed, ahead, torque_scale, torque_bias, pickoff_scale, pickoff_bias,
+});
 
 /// Memory of an axis with effects.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,6 +129,7 @@ impl Axis {
         Ok(Law {
             constant: N::quantise(effects.constant_torque_nm, units.torque),
             spring: of(effects.cable_spring_nm_per_rad, angle, units.torque),
+            angle_shift: (angle - units.gimbal_angle).max(0).unsigned_abs(),
             turn: of(self.period_s, units.rate, angle),
             viscous: of(effects.viscous_friction_nm_s_per_rad, units.rate, units.torque),
             quadratic: of(effects.quadratic_drag_nm_s2_per_rad2 * rate, units.rate, units.torque),
@@ -230,7 +239,7 @@ impl<N: Number> Law<N> {
         }
         state.vehicle_rate = vehicle_rate;
         let rate = vehicle_rate - gimbal_rate.shift_down(shift);
-        let phi = state.axis.gimbal_angle.shift_down(self.angle_shift());
+        let phi = state.axis.gimbal_angle.shift_down(self.angle_shift);
         let spring = self.spring.times(N::narrow(state.turned) - phi);
         let torque = self.of_rate(rate) + self.of_row(input) + spring;
         if self.delayed && state.begun { torque + self.late_torque.at(&self.motor_ahead(state)) } else { torque }
@@ -270,11 +279,6 @@ impl<N: Number> Law<N> {
             _ => last + (last - before),
         };
         [ahead, last, before]
-    }
-
-    /// From the full scale of phi to that of rel.
-    fn angle_shift(&self) -> u32 {
-        (N::exponent(LARGEST_ANGLE_RAD) - self.axis.units.gimbal_angle).max(0).unsigned_abs()
     }
 
     /// A sum that loses nothing of its small terms (Kahan's).

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | 4 | `GSLW` |
 //! | 1 | version of this layout: 3 |
-//! | 1 | which law: `a` an axis, `e` an estimator, `m` a monitor |
+//! | 1 | which law: `a` an axis, `c` an axis with effects, `e` an estimator, `m` a monitor |
 //! | 1 | number system: `f` f32, `q` fixed point |
 //! | 1 | 0 |
 //! | 4 | length of the image in bytes |
@@ -31,7 +31,7 @@ use crate::digest::Digest;
 use crate::law::Law;
 use crate::number::Number;
 use crate::stored::{Reader, Stored, Writer};
-use crate::{estimator, monitor};
+use crate::{effects, estimator, monitor};
 
 const MAGIC: [u8; 4] = *b"GSLW";
 const VERSION: u8 = 3;
@@ -126,6 +126,7 @@ macro_rules! has_image {
 }
 
 has_image!(Law<N>, b'a');
+has_image!(effects::Law<N>, b'c');
 has_image!(estimator::Law<N>, b'e');
 has_image!(monitor::Law<N>, b'm');
 

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use gimbal_plant::Row;
+use gimbal_servo::effects::Config as Effects;
 use gimbal_servo::paper::STANDARD_GRAVITY_MPS2 as G;
-use gimbal_servo::{Config, Digest, Fixed, Number};
+use gimbal_servo::{Config, Digest, Fixed, Input, Law, Number, Output};
 
 use crate::axis::{Axis, System, si};
 use crate::inputs::{at_period, bare, friction_profile, held, torque_jumps, torque_step, torques, unbalance_profile};
@@ -17,6 +18,8 @@ pub struct Case {
     pub name: &'static str,
     /// The axis.
     pub config: Config,
+    /// What it does beside the nominal equations, where the law with effects runs.
+    pub effects: Option<Effects>,
     /// Its inputs.
     pub rows: Vec<Row>,
 }
@@ -24,7 +27,10 @@ pub struct Case {
 /// All of them.
 #[must_use]
 pub fn cases() -> Vec<Case> {
-    let case = |name, config, rows| Case { name, config, rows };
+    let case = |name, config, rows| Case { name, config, effects: None, rows };
+    let corrected = |name, effects, rows| Case { name, config: Config::consistent(), effects: Some(effects), rows };
+    let three =
+        Effects { cable_spring_nm_per_rad: 1.2e-3, loop_delay_s: 4e-4, torque_bias_nm: 2e-4, ..Effects::default() };
     let consistent = Config::consistent();
     let mut coupled = consistent;
     coupled.gyro.cross_coupling = true;
@@ -37,7 +43,29 @@ pub fn cases() -> Vec<Case> {
         case("noise-coupled", coupled, noise(5_000, 3)),
         case("noise-as-printed-4ms", at_period(Config::as_printed(), 4e-3), noise(5_000, 4)),
         case("noise-250us", at_period(consistent, 0.25e-3), noise(5_000, 5)),
+        corrected("noise-all-effects", all_effects(), noise(5_000, 2)),
+        corrected("noise-three-effects", three, noise(5_000, 2)),
+        corrected("stop-to-stop-all-effects", all_effects(), torques(&torque_jumps(0.04, 10_000, 1e-3, 1))),
     ]
+}
+
+/// Every size that the law with effects has.
+#[must_use]
+pub fn all_effects() -> Effects {
+    Effects {
+        constant_torque_nm: 3e-4,
+        cable_spring_nm_per_rad: 1.2e-3,
+        viscous_friction_nm_s_per_rad: 5e-4,
+        quadratic_drag_nm_s2_per_rad2: 3e-4,
+        anisoelasticity_nm_s4_per_m2: 1e-6,
+        stribeck_excess_nm: 6e-4,
+        stribeck_rate_radps: 0.05,
+        loop_delay_s: 4e-4,
+        torque_scale: 0.02,
+        torque_bias_nm: 2e-4,
+        pickoff_scale: 0.01,
+        pickoff_bias_rad: 1e-4,
+    }
 }
 
 /// Every input a random walk of its own.
@@ -72,14 +100,24 @@ impl Case {
     }
 
     fn digest_in<N: Number>(&self) -> u64 {
-        let mut axis = Axis::<N>::new(&self.config).expect("a configuration that builds");
         let mut digest = Digest::default();
-        for row in &self.rows {
-            let input = axis.law.units().input(&si(row));
-            digest.add_output(&axis.law.step(&mut axis.state, input));
+        if let Some(effects) = &self.effects {
+            let law = self.config.build_with::<N>(effects).expect("effects that build");
+            let mut state = law.start();
+            self.add_outputs(&mut digest, law.axis(), |row| law.step(&mut state, row));
+            digest.add(&law.axis().save(state.axis()));
+        } else {
+            let Axis { law, mut state } = Axis::<N>::new(&self.config).expect("a configuration that builds");
+            self.add_outputs(&mut digest, &law, |row| law.step(&mut state, row));
+            digest.add(&law.save(&state));
         }
-        digest.add(&axis.law.save(&axis.state));
         digest.value()
+    }
+
+    fn add_outputs<N: Number>(&self, digest: &mut Digest, axis: &Law<N>, mut step: impl FnMut(Input<N>) -> Output<N>) {
+        for row in &self.rows {
+            digest.add_output(&step(axis.units().input(&si(row))));
+        }
     }
 }
 

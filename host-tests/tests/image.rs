@@ -1,7 +1,8 @@
 //! Laws as bytes: what comes back steps bit for bit as what was written, and no bytes at all do harm.
 
 use gimbal_servo::image::ImageError;
-use gimbal_servo::{Config, Digest, Fixed, Input, Law, Number, estimator, monitor};
+use gimbal_servo::{Config, Digest, Fixed, Input, Law, Number, effects, estimator, monitor};
+use host_tests::digests::all_effects;
 use host_tests::random::Random;
 use proptest::prelude::*;
 
@@ -25,21 +26,23 @@ fn seal(image: &mut [u8]) {
     digest.copy_from_slice(&proper.value().to_le_bytes());
 }
 
-/// Digest of steps through every regime: torques that throw the gyro from stop to stop, and friction.
+/// Through every regime: torques that throw the gyro from stop to stop, and friction.
+fn row(k: u32) -> Input<f64> {
+    Input {
+        accel_x_mps2: f64::from(k % 700) * 0.1,
+        accel_y_mps2: 98.0,
+        accel_z_mps2: 9.8,
+        vehicle_rate_radps: (f64::from(k % 200) - 100.0) * 1e-3,
+        torque_nm: [0.035, 0.0, -0.035, 0.0][(k / 300 % 4) as usize],
+        spin_rate_radps: 0.2,
+    }
+}
+
 fn digest<N: Number>(law: &Law<N>) -> u64 {
     let mut state = law.start();
     let mut digest = Digest::default();
     for k in 0..STEPS {
-        let torque_nm = [0.035, 0.0, -0.035, 0.0][(k / 300 % 4) as usize];
-        let row = Input {
-            accel_x_mps2: f64::from(k % 700) * 0.1,
-            accel_y_mps2: 98.0,
-            accel_z_mps2: 9.8,
-            vehicle_rate_radps: (f64::from(k % 200) - 100.0) * 1e-3,
-            torque_nm,
-            spin_rate_radps: 0.2,
-        };
-        digest.add_output(&law.step(&mut state, law.units().input(&row)));
+        digest.add_output(&law.step(&mut state, law.units().input(&row(k))));
     }
     digest.add(&law.save(&state));
     for sum in [law.velocity_error_mps(&state), law.position_error_m(&state)].as_flattened() {
@@ -71,6 +74,38 @@ fn configs() -> [Config; 4] {
 
 #[test]
 fn closed_form_a_law_comes_back_from_its_image() {
+    comes_back::<f32>();
+    comes_back::<Fixed>();
+}
+
+fn corrected<N: Number>() -> effects::Law<N> {
+    Config::consistent().build_with(&all_effects()).unwrap()
+}
+
+fn corrected_image<N: Number>(law: &effects::Law<N>) -> Vec<u8> {
+    let mut image = vec![0; effects::Law::<N>::IMAGE_LEN];
+    law.to_image(&mut image).unwrap();
+    image
+}
+
+fn corrected_digest<N: Number>(law: &effects::Law<N>) -> u64 {
+    let (mut state, mut digest) = (law.start(), Digest::default());
+    for k in 0..STEPS {
+        digest.add_output(&law.step(&mut state, law.axis().units().input(&row(k))));
+    }
+    digest.value()
+}
+
+#[test]
+fn closed_form_a_law_with_effects_comes_back_from_its_image() {
+    fn comes_back<N: Number>() {
+        let law = corrected::<N>();
+        let bytes = corrected_image(&law);
+        let back = effects::Law::<N>::from_image(&bytes).unwrap();
+        assert_eq!(back, law);
+        assert_eq!(corrected_digest(&back), corrected_digest(&law));
+        assert_eq!(Law::<N>::from_image(&bytes).unwrap_err(), ImageError::OtherLaw);
+    }
     comes_back::<f32>();
     comes_back::<Fixed>();
 }
@@ -171,12 +206,14 @@ fn regress_lengths_of_images() {
     let lengths = [
         Law::<f32>::IMAGE_LEN,
         Law::<Fixed>::IMAGE_LEN,
+        effects::Law::<f32>::IMAGE_LEN,
+        effects::Law::<Fixed>::IMAGE_LEN,
         estimator::Law::<f32>::IMAGE_LEN,
         estimator::Law::<Fixed>::IMAGE_LEN,
         monitor::Law::<f32>::IMAGE_LEN,
         monitor::Law::<Fixed>::IMAGE_LEN,
     ];
-    assert_eq!(lengths, [4251, 4259, 597, 597, 80, 80], "raise the version in src/image.rs");
+    assert_eq!(lengths, [4251, 4259, 4424, 4432, 597, 597, 80, 80], "raise the version in src/image.rs");
 }
 
 proptest! {
@@ -197,16 +234,7 @@ proptest! {
 }
 
 fn absurd<N: Number>(seed: u64, words: usize) -> Result<(), TestCaseError> {
-    let mut random = Random::new(seed);
-    let mut bytes = image(&Config::consistent().build::<N>().unwrap());
-    let last = bytes.len() - DIGEST_LEN - 4;
-    let span = u64::try_from(last - HEADER_LEN).unwrap();
-    for _ in 0..words {
-        let place = HEADER_LEN + usize::try_from(random.bits() % span).unwrap();
-        let word = random.bits().to_le_bytes();
-        bytes[place..place + 4].copy_from_slice(&word[..4]);
-    }
-    seal(&mut bytes);
+    let bytes = spoilt(image(&Config::consistent().build::<N>().unwrap()), HEADER_LEN, seed, words);
     match Law::<N>::from_image(&bytes) {
         Ok(law) => {
             prop_assert_eq!(image(&law), bytes);
@@ -214,5 +242,29 @@ fn absurd<N: Number>(seed: u64, words: usize) -> Result<(), TestCaseError> {
         }
         Err(error) => prop_assert_eq!(error, ImageError::Impossible),
     }
+    // Of a law with effects, which begins with that of its axis, what comes behind.
+    let from = Law::<N>::IMAGE_LEN - DIGEST_LEN;
+    let bytes = spoilt(corrected_image(&corrected::<N>()), from, seed, words);
+    match effects::Law::<N>::from_image(&bytes) {
+        Ok(law) => {
+            prop_assert_eq!(corrected_image(&law), bytes);
+            corrected_digest(&law);
+        }
+        Err(error) => prop_assert_eq!(error, ImageError::Impossible),
+    }
     Ok(())
+}
+
+/// An image whose words from a place on are replaced by anything, sealed.
+fn spoilt(mut bytes: Vec<u8>, from: usize, seed: u64, words: usize) -> Vec<u8> {
+    let mut random = Random::new(seed);
+    let last = bytes.len() - DIGEST_LEN - 4;
+    let span = u64::try_from(last - from).unwrap();
+    for _ in 0..words {
+        let place = from + usize::try_from(random.bits() % span).unwrap();
+        let word = random.bits().to_le_bytes();
+        bytes[place..place + 4].copy_from_slice(&word[..4]);
+    }
+    seal(&mut bytes);
+    bytes
 }
