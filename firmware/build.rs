@@ -1,10 +1,12 @@
 //! Chooses the board, gives the linker its memory map and the programs their constants; prepares what the program `flight`
-//! flies with, so that the target needs no doubles for it.
+//! flies with, so that the target needs no doubles for it, and images of the laws with effects.
 //!
 //! The board is `GIMBAL_BOARD`, or the default one of the target. A linker looks for `memory.x` in its working
 //! directory first, which is the root of the workspace, so the default board's map would shadow every other: only the
 //! default board is linked through `memory.x`; for the others the map is written into the link script itself.
 
+#[path = "build/corrected.rs"]
+mod corrected;
 #[path = "build/minute.rs"]
 mod minute;
 
@@ -59,12 +61,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=boards");
     println!("cargo:rerun-if-changed=../memory.x");
     println!("cargo:rerun-if-changed=vectors");
-    for source in ["build", "build.rs", "src/noise.rs", "src/profile.rs"] {
+    for source in ["build", "build.rs", "src/effects.rs", "src/noise.rs", "src/profile.rs"] {
         println!("cargo:rerun-if-changed={source}");
     }
     println!("cargo:rerun-if-env-changed=GIMBAL_BOARD");
     let out = PathBuf::from(env::var("OUT_DIR")?);
     minute::write(&out, &write_vectors(&out)?)?;
+    corrected::write(&out)?;
     if env::var("CARGO_CFG_TARGET_OS")? != "none" {
         return write_constants(&out, "host", 1_000_000, [None; 2], (None, None), u32::MAX);
     }

@@ -1,7 +1,7 @@
 //! Input for `digest` and `cost`: the same on the host and on every board, made by integer and plain f64 arithmetic.
 
 use core::f64::consts::PI;
-use gimbal_servo::{Config, Digest, Fixed, Input, Interpolation, Law, Number};
+use gimbal_servo::{Config, Digest, Fixed, Input, Interpolation, Law, Number, Output, State};
 
 /// One run: a configuration, and the input row of each step.
 #[derive(Debug, Clone, Copy)]
@@ -52,20 +52,26 @@ macro_rules! flight_on_host {
 
 impl Case {
     /// Digest of everything that comes out over the whole case, the INS sums too; 0 if the law cannot be built.
+    // Not inlined: the laws of all cases at once would not fit the stack of the smallest board.
     #[must_use]
+    #[inline(never)]
     pub fn digest<N: Number>(&self) -> u64 {
-        self.run::<N>().map_or(0, |(mut digest, sums)| {
-            for sum in sums {
-                digest.add(&sum.to_bits().to_le_bytes());
-            }
-            digest.value()
-        })
+        // By reference: a law is some kilobytes, and moving it out would make a copy.
+        let built = (self.config)().build::<N>();
+        let Ok(law) = &built else { return 0 };
+        let mut state = law.start();
+        let outputs = self.outputs(law, |row| law.step(&mut state, row));
+        with_sums(outputs, law, &state)
     }
 
     /// Digest of the outputs alone; 0 if the law cannot be built.
     #[must_use]
+    #[inline(never)]
     pub fn output_digest<N: Number>(&self) -> u64 {
-        self.run::<N>().map_or(0, |(digest, _)| digest.value())
+        let built = (self.config)().build::<N>();
+        let Ok(law) = &built else { return 0 };
+        let mut state = law.start();
+        self.outputs(law, |row| law.step(&mut state, row)).value()
     }
 
     /// Digest of the outputs in fixed point alone, for rows that a program has in single precision; 0 if the law cannot be
@@ -89,21 +95,13 @@ impl Case {
         digest.value()
     }
 
-    /// Steps through the whole case: the digest of the outputs, and velocity and position error at the end.
-    // Not inlined: the laws of all cases at once would not fit the stack of the smallest board.
-    #[inline(never)]
-    fn run<N: Number>(&self) -> Option<(Digest, [f64; 4])> {
-        // By reference: a law is some kilobytes, and moving it out would make a copy.
-        let built = (self.config)().build::<N>();
-        let Ok(law) = &built else { return None };
-        let mut state = law.start();
+    /// Steps through the whole case.
+    pub(crate) fn outputs<N: Number>(&self, axis: &Law<N>, mut step: impl FnMut(Input<N>) -> Output<N>) -> Digest {
         let mut digest = Digest::default();
         for k in 0..self.steps {
-            let output = law.step(&mut state, self.input(law, k));
-            digest.add_output(&output);
+            digest.add_output(&step(self.input(axis, k)));
         }
-        let ([vx, vy], [px, py]) = (law.velocity_error_mps(&state), law.position_error_m(&state));
-        Some((digest, [vx, vy, px, py]))
+        digest
     }
 
     /// Row of step `k` as the law takes it.
@@ -111,6 +109,14 @@ impl Case {
     pub fn input<N: Number>(&self, law: &Law<N>, k: u32) -> Input<N> {
         law.units().input(&(self.row)(k))
     }
+}
+
+/// A digest of outputs, with velocity and position error at the end.
+pub(crate) fn with_sums<N: Number>(mut digest: Digest, axis: &Law<N>, state: &State<N>) -> u64 {
+    for sum in axis.velocity_error_mps(state).into_iter().chain(axis.position_error_m(state)) {
+        digest.add(&sum.to_bits().to_le_bytes());
+    }
+    digest.value()
 }
 
 /// x, y, z [cm/s2] and rate [0.01 deg/s], 100 rows a second.
@@ -179,7 +185,7 @@ fn variant_row(k: u32) -> Input<f64> {
 }
 
 /// Scrambles 32 bits (the finaliser of `MurmurHash3`).
-fn mix(mut x: u32) -> u32 {
+pub(crate) fn mix(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x85EB_CA6B);
     x = (x ^ (x >> 13)).wrapping_mul(0xC2B2_AE35);
     x ^ (x >> 16)

@@ -11,8 +11,10 @@ pub mod board {
 }
 
 pub mod cases;
+pub mod corrected;
 #[cfg(target_os = "none")]
 pub mod counter;
+pub mod effects;
 #[cfg(target_os = "none")]
 #[doc(hidden)]
 pub mod entry;

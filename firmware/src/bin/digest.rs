@@ -5,7 +5,7 @@
 use gimbal_firmware::cases::{CASES, Case, FLIGHT, STOPS};
 #[cfg(target_os = "none")]
 use gimbal_firmware::semihosting::println;
-use gimbal_firmware::{board, estimates};
+use gimbal_firmware::{board, corrected, estimates};
 use gimbal_servo::Fixed;
 
 #[cfg(target_os = "none")]
@@ -17,13 +17,24 @@ fn main() -> Result<(), &'static str> {
     run()
 }
 
-/// What it takes to build an estimator beside an axis, and three of both.
+/// What it takes to build a law with effects, an estimator beside an axis, and three of both. With less, effects come from
+/// an image.
+const EFFECTS_RAM_BYTES: u32 = 32 * 1024;
 const ESTIMATOR_RAM_BYTES: u32 = 32 * 1024;
 const PLATFORM_RAM_BYTES: u32 = 128 * 1024;
 
 fn run() -> Result<(), &'static str> {
     for case in CASES {
         told(case.name, case.steps, [case.digest::<f32>(), case.digest::<Fixed>()])?;
+    }
+    for corrected in corrected::CASES {
+        let (Case { name, steps, .. }, [float, fixed]) = (corrected.case, corrected.images);
+        let digests = if has(EFFECTS_RAM_BYTES) {
+            [corrected.digest::<f32>(), corrected.digest::<Fixed>()]
+        } else {
+            [corrected.image_digest::<f32>(float), corrected.image_digest::<Fixed>(fixed)]
+        };
+        told(name, steps, digests)?;
     }
     if has(ESTIMATOR_RAM_BYTES) {
         let flight = Case { name: "estimator-flight", steps: 3_000, ..FLIGHT };

@@ -1,5 +1,5 @@
 //! The step alone, and estimator and gap monitor alone, as functions of their own: what the gates examine and the budget
-//! measures.
+//! measures. With the feature `effects` the step is that of the law with effects, by itself as a program flies it.
 //!
 //! Linked with `panic-never`, whose panic handler exists in no library: where a panic can be reached the link fails.
 //! There is no global allocator, so code that allocates does not build either.
@@ -15,8 +15,12 @@ mod target {
     // Symbols that the image keeps by name: unmangled names are unsafe because two could be equal.
     #![allow(unsafe_code)]
 
+    #[cfg(feature = "effects")]
+    use gimbal_servo::effects::{Law as Flown, State as FlownState};
     use gimbal_servo::estimator::{self, Estimate, Flags, Measured};
     use gimbal_servo::{Faults, Fixed, Input, Law, Number, Output, State, monitor};
+    #[cfg(not(feature = "effects"))]
+    use gimbal_servo::{Law as Flown, State as FlownState};
     #[cfg(not(feature = "panic-allowed"))]
     use panic_never as _;
 
@@ -26,15 +30,20 @@ mod target {
 
     /// Named in the image and in `xtask/src/board/gates.rs`.
     #[unsafe(no_mangle)]
-    extern "C" fn step_f32(law: &Law<f32>, state: &mut State<f32>, input: &Input<f32>, output: &mut Output<f32>) {
+    extern "C" fn step_f32(
+        law: &Flown<f32>,
+        state: &mut FlownState<f32>,
+        input: &Input<f32>,
+        output: &mut Output<f32>,
+    ) {
         step(law, state, input, output);
     }
 
     /// Named in the image and in `xtask/src/board/gates.rs`.
     #[unsafe(no_mangle)]
     extern "C" fn step_fixed(
-        law: &Law<Fixed>,
-        state: &mut State<Fixed>,
+        law: &Flown<Fixed>,
+        state: &mut FlownState<Fixed>,
         input: &Input<Fixed>,
         output: &mut Output<Fixed>,
     ) {
@@ -42,7 +51,7 @@ mod target {
     }
 
     #[inline(always)]
-    fn step<N: Number>(law: &Law<N>, state: &mut State<N>, input: &Input<N>, output: &mut Output<N>) {
+    fn step<N: Number>(law: &Flown<N>, state: &mut FlownState<N>, input: &Input<N>, output: &mut Output<N>) {
         *output = law.step(state, *input);
         spoil();
     }
@@ -95,7 +104,7 @@ mod target {
         bad::indirect();
     }
 
-    type Step<N> = extern "C" fn(&Law<N>, &mut State<N>, &Input<N>, &mut Output<N>);
+    type Step<N> = extern "C" fn(&Flown<N>, &mut FlownState<N>, &Input<N>, &mut Output<N>);
 
     type Help<N> = extern "C" fn(&mut Aids<'_, N>);
 

@@ -59,13 +59,17 @@ pub(crate) fn text(board: &Board, costs: &BTreeMap<&'static str, Cost>) -> Resul
     };
     row("state of an axis [bytes]", &|cost| cost.state_bytes.to_string())?;
     row("law of an axis [bytes]", &|cost| cost.law_bytes.to_string())?;
+    row("state of an axis with effects [bytes]", &|cost| cost.effects_bytes[0].to_string())?;
+    row("law of an axis with effects [bytes]", &|cost| cost.effects_bytes[1].to_string())?;
     row("state of the estimator [bytes]", &|cost| cost.estimator_bytes[0].to_string())?;
     row("law of the estimator [bytes]", &|cost| cost.estimator_bytes[1].to_string())?;
     row("code of the step [bytes]", &|cost| cost.code_bytes.to_string())?;
+    row("code of the step with effects [bytes]", &|cost| cost.effects_code_bytes.to_string())?;
     row("code of estimator and monitor [bytes]", &|cost| cost.aids_code_bytes.to_string())?;
     row("constants of all [bytes]", &|cost| cost.constant_bytes.to_string())?;
     row("static RAM of all [bytes]", &|cost| cost.static_ram_bytes.to_string())?;
     row("stack of the step, at most [bytes]", &|cost| cost.stack_bytes.to_string())?;
+    row("stack of the step with effects [bytes]", &|cost| cost.effects_stack_bytes.to_string())?;
     row("stack of estimator and monitor [bytes]", &|cost| cost.aids_stack_bytes.to_string())?;
     let profiles: BTreeSet<&String> = costs.values().flat_map(|cost| cost.instructions.keys()).collect();
     for profile in profiles {

@@ -23,6 +23,8 @@ pub(crate) struct Cost {
     pub(crate) instructions: BTreeMap<String, Count>,
     pub(crate) state_bytes: u64,
     pub(crate) law_bytes: u64,
+    /// State and law of an axis with effects.
+    pub(crate) effects_bytes: [u64; 2],
     /// State and law of the estimator.
     pub(crate) estimator_bytes: [u64; 2],
     /// Largest relative error of another crate's function [1e-6], by name.
@@ -33,6 +35,9 @@ pub(crate) struct Cost {
     pub(crate) constant_bytes: u32,
     pub(crate) static_ram_bytes: u32,
     pub(crate) stack_bytes: u32,
+    /// Code that the step with effects reaches, and the most stack it takes.
+    pub(crate) effects_code_bytes: u32,
+    pub(crate) effects_stack_bytes: u32,
     /// Code that estimator and monitor reach, and the most stack they take.
     pub(crate) aids_code_bytes: u32,
     pub(crate) aids_stack_bytes: u32,
@@ -45,10 +50,13 @@ pub(crate) struct Cost {
 /// Costs on `board`, by number system.
 pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
     let mut costs = BTreeMap::new();
-    let step = Image::read(&image::step(board, None).or_else(|_| image::step(board, Some("panic-allowed")))?)?;
+    // The nominal law last: its image is left for who looks at it.
+    let effects = elf::functions(&step(board, Some("effects"))?)?;
+    let step = step(board, None)?;
     let functions = elf::functions(&step)?;
     for (number, [root, aids]) in gates::ROOTS {
         let (reach, aids) = (Reach::from(&functions, root)?, Reach::from(&functions, aids)?);
+        let effects = Reach::from(&effects, root)?;
         let names = reach.functions.iter().flat_map(|(function, _)| &function.names);
         costs.insert(
             number,
@@ -57,6 +65,8 @@ pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
                 constant_bytes: step.section_bytes(".rodata"),
                 static_ram_bytes: step.section_bytes(".data") + step.section_bytes(".bss"),
                 stack_bytes: reach.stack_bytes,
+                effects_code_bytes: effects.code_bytes(),
+                effects_stack_bytes: effects.stack_bytes,
                 aids_code_bytes: aids.code_bytes(),
                 aids_stack_bytes: aids.stack_bytes,
                 library: names.filter(|name| name.starts_with("__")).cloned().collect(),
@@ -66,14 +76,20 @@ pub(crate) fn measure(board: &Board) -> Result<BTreeMap<&'static str, Cost>> {
         );
     }
     let output = emulator::run(board, &image::of(board, "cost")?)?;
-    for line in output.lines() {
+    let with_effects = emulator::run(board, &image::with(board, "cost", "effects")?)?;
+    for line in output.lines().chain(with_effects.lines()) {
         read_line(line, &mut costs).with_context(|| format!("from {}: `{line}`", board.name))?;
     }
     Ok(costs)
 }
 
-/// `cost PROFILE NUMBER STEPS MIN MEAN_MILLI MAX`, `cost-events` and `cost-others` the same, `size NUMBER STATE LAW`, `size-estimator` the
-/// same, `error NAME NUMBER PPM`.
+/// The program `step` with the nominal law or another one.
+fn step(board: &Board, law: Option<&str>) -> Result<Image> {
+    Image::read(&image::step(board, law).or_else(|_| image::step_that_may_panic(board, law))?)
+}
+
+/// `cost PROFILE NUMBER STEPS MIN MEAN_MILLI MAX`, `cost-events` and `cost-others` the same, `size NUMBER STATE LAW`,
+/// `size-effects` and `size-estimator` the same, `error NAME NUMBER PPM`.
 fn read_line(line: &str, costs: &mut BTreeMap<&'static str, Cost>) -> Result<()> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
@@ -81,9 +97,10 @@ fn read_line(line: &str, costs: &mut BTreeMap<&'static str, Cost>) -> Result<()>
             let cost = costs.get_mut(*number).context("an unknown number system")?;
             (cost.state_bytes, cost.law_bytes) = (state.parse()?, law.parse()?);
         }
-        ["size-estimator", number, state, law] => {
+        [kind @ ("size-effects" | "size-estimator"), number, state, law] => {
             let cost = costs.get_mut(*number).context("an unknown number system")?;
-            cost.estimator_bytes = [state.parse()?, law.parse()?];
+            let bytes = if *kind == "size-effects" { &mut cost.effects_bytes } else { &mut cost.estimator_bytes };
+            *bytes = [state.parse()?, law.parse()?];
         }
         ["error", name, number, ppm] => {
             let cost = costs.get_mut(*number).context("an unknown number system")?;
@@ -133,7 +150,9 @@ fn to_json(board: &Board, costs: &BTreeMap<&str, Cost>) -> Result<serde_json::Va
         .map(|(number, cost)| {
             let sizes = json!({
                 "flash_bytes": cost.code_bytes + cost.constant_bytes, "state_bytes": cost.state_bytes,
-                "law_bytes": cost.law_bytes, "estimator_monitor_code_bytes": cost.aids_code_bytes,
+                "law_bytes": cost.law_bytes, "effects_code_bytes": cost.effects_code_bytes,
+                "effects_stack_bytes": cost.effects_stack_bytes, "effects_state_bytes": cost.effects_bytes[0],
+                "effects_law_bytes": cost.effects_bytes[1], "estimator_monitor_code_bytes": cost.aids_code_bytes,
                 "estimator_monitor_stack_bytes": cost.aids_stack_bytes, "estimator_state_bytes": cost.estimator_bytes[0],
                 "estimator_law_bytes": cost.estimator_bytes[1], "stack_bytes": cost.stack_bytes,
                 "static_ram_bytes": cost.static_ram_bytes,

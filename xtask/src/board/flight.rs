@@ -64,5 +64,5 @@ fn watchdog_bites(board: &Board) -> Result<()> {
 
 fn fly(board: &Board, feature: &str) -> Result<(String, bool)> {
     let shift = board.emulator.flight_shift.context("the default board flies")?;
-    emulator::run_to_end(board, &image::flight_with(board, feature)?, shift)
+    emulator::run_to_end(board, &image::with(board, "flight", feature)?, shift)
 }

@@ -1,6 +1,6 @@
-//! Stage `target-gates`: nothing that a step, an estimate or the gap monitor can reach panics, allocates, computes in
-//! double precision, recurses or calls through a pointer. Each gate is also shown to close, on each of these functions
-//! spoilt on purpose.
+//! Stage `target-gates`: nothing that a step, with effects or without, an estimate or the gap monitor can reach panics,
+//! allocates, computes in double precision, recurses or calls through a pointer. Each gate is also shown to close, on each
+//! of these functions spoilt on purpose.
 
 use super::boards::{self, Board};
 use super::image;
@@ -17,6 +17,9 @@ fn roots() -> impl Iterator<Item = &'static str> {
     ROOTS.into_iter().flat_map(|(_, roots)| roots)
 }
 
+/// The laws that are gated: the nominal one, and by a feature of the firmware that with effects.
+const LAWS: [Option<&str>; 2] = [None, Some("effects")];
+
 /// Features of the firmware that spoil each function, and what the gate then says.
 const SPOILT: [(&str, &str); 5] = [
     ("bad-panic", "panic"),
@@ -29,27 +32,29 @@ const SPOILT: [(&str, &str); 5] = [
 pub(crate) fn check() -> Result<Note> {
     let boards = boards::one_for_each_target()?;
     for board in &boards {
-        let image = plain(board)?;
-        for root in roots() {
-            gate(&image, root).with_context(|| format!("{} {root}", board.target))?;
+        for law in LAWS {
+            let image = plain(board, law)?;
+            for root in roots() {
+                gate(&image, root).with_context(|| format!("{} {root} {}", board.target, law.unwrap_or_default()))?;
+            }
         }
         for (feature, expected) in SPOILT {
             closes(board, feature, expected)?;
         }
         println!(
-            "{}: no panic, double, allocation, recursion or indirect call from {}; each gate closes",
+            "{}: no panic, double, allocation, recursion or indirect call from {}, nor with effects; each gate closes",
             board.target,
             roots().collect::<Vec<_>>().join(", ")
         );
     }
-    Ok(format!("{} targets, {} functions", boards.len(), roots().count()))
+    Ok(format!("{} targets, {} functions, {} laws", boards.len(), roots().count(), LAWS.len()))
 }
 
 /// The program as it is; where it does not link because something panics, the ways to the panic.
-fn plain(board: &Board) -> Result<PathBuf> {
-    match image::step(board, None) {
+fn plain(board: &Board, law: Option<&str>) -> Result<PathBuf> {
+    match image::step(board, law) {
         Err(error) if format!("{error:#}").contains("panic-never") => {
-            bail!("{}: a function of the tick can panic:\n{}", board.target, ways_to_panic(board)?)
+            bail!("{}: a function of the tick can panic:\n{}", board.target, ways_to_panic(board, law)?)
         }
         image => image,
     }
@@ -126,8 +131,8 @@ fn forbidden(name: &str) -> Option<&'static str> {
 }
 
 /// Every way from one of the functions to a panic, from an image that is allowed to have one.
-fn ways_to_panic(board: &Board) -> Result<String> {
-    let functions = elf::functions(&Image::read(&image::step(board, Some("panic-allowed"))?)?)?;
+fn ways_to_panic(board: &Board, law: Option<&str>) -> Result<String> {
+    let functions = elf::functions(&Image::read(&image::step_that_may_panic(board, law)?)?)?;
     let mut ways = Vec::new();
     for root in roots() {
         let reach = Reach::from(&functions, root)?;

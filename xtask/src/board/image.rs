@@ -23,10 +23,15 @@ pub(crate) fn of(board: &Board, program: &str) -> Result<PathBuf> {
     Ok(folder(board).join(program))
 }
 
-/// The program `step`, which holds nothing but the step; `feature` spoils it.
+/// The program `step`, which holds nothing but the step; `feature` spoils it, or makes it that of another law.
 pub(crate) fn step(board: &Board, feature: Option<&str>) -> Result<PathBuf> {
     build(board, &["step"], feature)?;
     Ok(folder(board).join("step"))
+}
+
+/// The same, linked although it can panic.
+pub(crate) fn step_that_may_panic(board: &Board, law: Option<&str>) -> Result<PathBuf> {
+    step(board, Some(&law.map_or("panic-allowed".into(), |law| format!("{law},panic-allowed"))))
 }
 
 /// The program `computer`, which holds nothing but what a board does with bytes from a bench; `feature` spoils it.
@@ -35,15 +40,15 @@ pub(crate) fn computer(board: &Board, feature: Option<&str>) -> Result<PathBuf> 
     Ok(folder(board).join("computer"))
 }
 
-/// The program `flight`, disturbed by `feature`.
-pub(crate) fn flight_with(board: &Board, feature: &str) -> Result<PathBuf> {
-    let (plain, disturbed) = (of(board, "flight")?, folder(board).join(format!("flight-{feature}")));
-    let kept = folder(board).join("flight-kept");
+/// `program`, changed by `feature`.
+pub(crate) fn with(board: &Board, program: &str, feature: &str) -> Result<PathBuf> {
+    let (plain, changed) = (of(board, program)?, folder(board).join(format!("{program}-{feature}")));
+    let kept = folder(board).join(format!("{program}-kept"));
     fs::copy(&plain, &kept)?;
-    build(board, &["flight"], Some(feature))?;
-    fs::rename(&plain, &disturbed)?;
+    build(board, &[program], Some(feature))?;
+    fs::rename(&plain, &changed)?;
     fs::rename(&kept, &plain)?;
-    Ok(disturbed)
+    Ok(changed)
 }
 
 /// An example of the firmware, with the feature that it needs.

@@ -43,7 +43,7 @@ pub(crate) fn print(board: &str) -> Result<()> {
 fn fly(board: &Board, features: &str) -> Result<(String, bool)> {
     let decoder = ready()?;
     let shift = board.emulator.flight_shift.with_context(|| format!("`flight` does not run on {}", board.name))?;
-    let image = image::flight_with(board, features)?;
+    let image = image::with(board, "flight", features)?;
     let (bytes, errors, success) = emulator::run_to_end_raw(board, &image, shift)?;
     Ok((decode(&decoder, &image, &bytes)? + &errors, success))
 }

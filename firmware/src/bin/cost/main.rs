@@ -1,11 +1,13 @@
 //! Counts the instructions of the step, each single one of ten seconds of flight and of ten seconds between the stops;
 //! of its blocks by themselves; of estimator and monitor; of the frames of a bench; and of other crates that do part of
-//! the same work.
+//! the same work. With the feature `effects`: of the step with effects alone.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 mod aids;
+#[cfg(target_os = "none")]
+mod corrected;
 #[cfg(target_os = "none")]
 mod model;
 #[cfg(all(target_os = "none", target_arch = "arm"))]
@@ -32,6 +34,9 @@ fn run() -> Result<(), &'static str> {
     const AIDS_RAM_BYTES: u32 = 32 * 1024;
 
     let mut counter = Counter::start();
+    if cfg!(feature = "effects") {
+        return corrected::run(&mut counter);
+    }
     println!("size f32 {} {}", size_of::<State<f32>>(), size_of::<gimbal_servo::Law<f32>>());
     println!("size fixed {} {}", size_of::<State<Fixed>>(), size_of::<gimbal_servo::Law<Fixed>>());
     println!("size-estimator f32 {} {}", size_of::<estimator::State<f32>>(), size_of::<estimator::Law<f32>>());
