@@ -51,7 +51,7 @@ pub struct Parameter {
 /// How an effect's size is found and limited.
 #[derive(Debug, Clone, Copy)]
 pub struct Range {
-    /// A small size.
+    /// The smallest size that makes sense: what is less is there in every platform.
     pub small: f64,
     /// The largest size that still makes sense.
     pub largest: f64,

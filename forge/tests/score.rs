@@ -94,6 +94,32 @@ fn closed_form_a_single_effect_named_rightly_wrongly_and_by_its_class() {
 }
 
 #[test]
+fn closed_form_an_effect_that_cannot_be_seen_beside_another_need_not_be_named() {
+    let faint = AnswerEffect { d_beside_others: 3.0, ..effect("time_skew", 1.0, &[]) };
+    let pair = vec![effect("stribeck", 4.0, &[]), faint];
+    let said = |names: &[(&str, f64)]| one(Kind::Two, pair.clone(), found("explained", names, 0.0));
+    let first = said(&[("stribeck", 0.9)]);
+    assert!(first.right && !first.exact && (first.on_truth - 1.0).abs() < 1e-12);
+    assert!(said(&[("stribeck", 0.9), ("time_skew", 0.6)]).right);
+    assert!(!said(&[("stribeck", 0.9), ("dead_zone", 0.6)]).right);
+    assert!(!said(&[("time_skew", 0.6)]).right);
+}
+
+#[test]
+fn closed_form_who_refuses_has_raised_no_alarm() {
+    let refused = one(
+        Kind::Nothing,
+        Vec::new(),
+        report("\"verdict\":\"cannot_tell\",\"effects\":[],\"unknown_probability\":0.0"),
+    );
+    assert!(refused.right && !refused.detected);
+    let gap = vec![effect("stribeck", 4.0, &[])];
+    assert!(
+        !one(Kind::One, gap, report("\"verdict\":\"cannot_tell\",\"effects\":[],\"unknown_probability\":0.0")).right
+    );
+}
+
+#[test]
 fn closed_form_cannot_tell_is_right_when_its_class_holds_the_truth() {
     let text = "\"verdict\":\"cannot_tell\",\"effects\":[{\"name\":\"loop_delay\",\"probability\":0.6}],\
                 \"unknown_probability\":0.1,\"alternatives\":[{\"effects\":[\"motor_lag\"],\"probability\":0.3}]";
@@ -217,6 +243,20 @@ fn closed_form_a_loss_is_what_lies_below_the_interval_it_had() {
     let worse = lost(&named(80, 0.9));
     assert!(worse.iter().any(|what| what.starts_with("top-1")), "{worse:?}");
     assert!(worse.iter().any(|what| what.starts_with("verdicts right, put in: one")), "{worse:?}");
+    // of five logs, one alone that turns is chance, two are a loss
+    let one_of_five = written(&named(1, 0.9)[..5]).score;
+    let verdicts = |judged: &[Judged]| {
+        compare(&one_of_five, &Score::of(judged))
+            .iter()
+            .any(|change| change.lost && change.what.starts_with("verdicts"))
+    };
+    assert!(!verdicts(&named(0, 0.9)[..5]));
+    let four_of_five = written(&named(4, 0.9)[..5]).score;
+    assert!(
+        compare(&four_of_five, &Score::of(&named(1, 0.9)[..5]))
+            .iter()
+            .any(|change| change.lost && change.what.starts_with("verdicts"))
+    );
 }
 
 #[test]

@@ -13,6 +13,8 @@ const REGULAR: f64 = 1e-3;
 const GAP_PERIODS: f64 = 1.5;
 /// Width of a class of intervals, as a ratio.
 const CLASS_RATIO: f64 = 1.05;
+/// Share of the period from which on an interval is of another rate.
+const OTHER_RATE: f64 = 0.2;
 
 /// Intervals of one length, roughly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -239,8 +241,12 @@ impl TimeWatch {
         }
         let counted = watch.regular + watch.jittered;
         watch.report.jitter_rms_s = (watch.square_sum / (counted.max(1)) as f64).sqrt();
-        let mut lengths: Vec<(u64, f64)> = watch.classes.values().copied().collect();
-        lengths.push((watch.regular, watch.regular as f64 * watch.report.period_s));
+        // intervals that scatter about the period are jitter, and of its rate
+        let period_s = watch.report.period_s;
+        let near = |(count, sum_s): &(u64, f64)| (sum_s / *count as f64 - period_s).abs() < OTHER_RATE * period_s;
+        let (own, mut lengths): (Vec<(u64, f64)>, Vec<(u64, f64)>) = watch.classes.values().copied().partition(near);
+        let regular = (watch.regular, watch.regular as f64 * period_s);
+        lengths.push(own.iter().fold(regular, |all, class| (all.0 + class.0, all.1 + class.1)));
         let all: u64 = lengths.iter().map(|(count, _)| count).sum();
         lengths.retain(|(count, _)| 20 * count >= all && *count > 0);
         lengths.sort_by_key(|(count, _)| std::cmp::Reverse(*count));
@@ -290,6 +296,14 @@ mod tests {
         assert!((report.longest_gap_at_s - 0.05).abs() < 1e-12);
         assert!((report.jitter_s - 0.001).abs() < 1e-9 && (report.jitter_at_s - 0.041).abs() < 1e-12);
         assert!(!report.is_regular());
+    }
+
+    #[test]
+    fn contract_jitter_is_no_other_rate() {
+        let times_s: Vec<f64> = (0..3000).map(|k| f64::from(k) / 100.0 + if k % 3 == 0 { 2e-4 } else { 0.0 }).collect();
+        let report = watch(&times_s);
+        assert_eq!(report.rates.len(), 1);
+        assert!(report.jitter_rms_s > 5e-5 && !report.to_string().contains("no constant rate"));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use gimbal_servo::Config;
 
 use super::drift::Drift;
-use super::sizing::{Bench, STEPS};
+use super::sizing::{Bench, QUANTISATION, STEPS};
 use super::text::{self, Column};
 use super::{Answer, AnswerEffect, Case, Kind, Recipe, SignalGap, log_name};
 use crate::detect::{DETECTABLE, UNSCORED_S};
@@ -168,11 +168,12 @@ fn size_all(
     for name in drawn {
         let effect = Effect::draw(name, draw);
         let detectable = bench.detectable_size(&effect, &projection)?;
-        let most = (effect.range().largest / detectable).min(multiples.1);
+        let range = effect.range();
+        let most = (range.largest / detectable).min(multiples.1);
         if most < 1.05 * multiples.0 {
             return None;
         }
-        let size = detectable * draw.log_uniform(multiples.0, most);
+        let size = (detectable * draw.log_uniform(multiples.0, most)).max(range.small);
         effect.apply(size, &bench.scale, &mut world);
         effects.push((effect, size, detectable));
     }
@@ -227,6 +228,7 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                 .collect();
             let mut all: Vec<&[f64]> = among.iter().map(|(_, column)| &column[..]).collect();
             all.extend(&beside);
+            let of = |d: f64| if effect.name == QUANTISATION { bench.step_stands_out(*size) } else { d };
             AnswerEffect {
                 name: effect.name.to_owned(),
                 block: crate::effects::block_of(effect.name).to_owned(),
@@ -234,9 +236,9 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                 size: *size,
                 detectable_size: *detectable,
                 multiple: size / detectable,
-                d: projection.left_of(&alone[place]),
-                d_beside_others: projection.left_with(&marginal, &beside),
-                d_beyond_library: projection.left_with(&marginal, &all),
+                d: of(projection.left_of(&alone[place])),
+                d_beside_others: of(projection.left_with(&marginal, &beside)),
+                d_beyond_library: of(projection.left_with(&marginal, &all)),
                 equivalents,
             }
         })

@@ -13,6 +13,8 @@ use crate::track::Track;
 
 /// Integration steps between rows where only differences count: 4 kHz.
 pub(super) const STEPS: usize = 4;
+/// The effect that is no shape in time.
+pub(super) const QUANTISATION: &str = "pickoff_quantisation";
 /// Share of a tolerance over which a sensitivity is taken.
 const SENSITIVITY_SHARE: f64 = 0.3;
 
@@ -30,6 +32,8 @@ pub(super) struct Bench<'a> {
     logged: Option<Outputs>,
     whitener: Whitener,
     nuisances: Vec<Nuisance>,
+    /// White noise of the pick-off [rad].
+    pickoff_rad: f64,
 }
 
 fn plus(a: &Outputs, b: &Outputs, sign: f64) -> Outputs {
@@ -81,6 +85,7 @@ impl<'a> Bench<'a> {
             logged: None,
             whitener,
             nuisances: Vec::new(),
+            pickoff_rad: noise.gyro_angle_rad,
         };
         bench.logged = Some(Scene::outputs(base, &run(base, &base.sensors.logged(&scene.track))));
         for name in NAMES.into_iter().chain([TURN]) {
@@ -167,7 +172,17 @@ impl<'a> Bench<'a> {
         }
     }
 
+    /// How far the power of a quantised pick-off's steps stands out of its noise: where each row is rounded to nobody
+    /// knows, unless the angle were known to a fraction of a step, so the difference itself tells nothing.
+    pub(super) fn step_stands_out(&self, step_rad: f64) -> f64 {
+        let rows = self.outputs[0].len() as f64;
+        step_rad * step_rad / (12.0 * self.pickoff_rad * self.pickoff_rad) * (0.5 * rows).sqrt()
+    }
+
     fn d_of(&self, effect: &Effect, size: f64, projection: &Projection<'_>) -> f64 {
+        if effect.name == QUANTISATION {
+            return self.step_stands_out(size);
+        }
         let left = projection.left_of(&self.change(effect, size));
         if left.is_finite() { left } else { f64::INFINITY }
     }
@@ -226,7 +241,7 @@ impl<'a> Bench<'a> {
     pub(super) fn tangents(&self) -> Vec<(&'static str, Vec<f64>)> {
         library_names()
             // their changes are not along a line
-            .filter(|name| !matches!(*name, "pickoff_quantisation" | "stop_angle" | "torque_saturation"))
+            .filter(|name| !matches!(*name, QUANTISATION | "stop_angle" | "torque_saturation"))
             .map(|name| {
                 if let Some(nuisance) =
                     self.nuisances.iter().find(|nuisance| nuisance.name == name && name != "viscous_friction")

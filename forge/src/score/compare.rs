@@ -54,10 +54,12 @@ fn gate(before: &Gate, now: &Gate) -> Option<Change> {
     Some(Change { what: before.what.clone(), before: (old, before.interval), now: value, lost: worse })
 }
 
+/// As for a gate; one log alone that turned is chance and no loss.
 fn group(title: &str, before: &WrittenGroup, now: &Group) -> Option<Change> {
     let (old, value, interval) = (before.right.share()?, now.right.share()?, before.right.wilson());
     let what = format!("verdicts right, {title} {}", before.name);
-    Some(Change { what, before: (old, interval), now: value, lost: value < interval.0 })
+    let turned = old * now.right.of as f64 - now.right.hits as f64;
+    Some(Change { what, before: (old, interval), now: value, lost: value < interval.0 && turned > 1.5 })
 }
 
 /// Every figure that both have.

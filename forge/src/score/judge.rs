@@ -59,6 +59,19 @@ pub fn set_accepted(names: &[&str], effects: &[AnswerEffect]) -> bool {
         })
 }
 
+/// Whether names pair up with the effects but for some that cannot be seen beside the others; an effect alone that
+/// cannot be seen is for `no_gap`.
+#[must_use]
+pub fn seen_accepted(names: &[&str], effects: &[AnswerEffect]) -> bool {
+    let without = |place: usize| {
+        let mut rest = effects.to_vec();
+        rest.remove(place);
+        rest
+    };
+    let hidden = |place: &usize| effects.len() > 1 && effects[*place].d_beside_others < DETECTABLE;
+    set_accepted(names, effects) || (0..effects.len()).filter(hidden).any(|place| seen_accepted(names, &without(place)))
+}
+
 /// Whether nothing of an answer can be seen.
 #[must_use]
 pub fn below_detectable(answer: &Answer) -> bool {
@@ -98,20 +111,23 @@ pub fn judge(answer: Answer, report: Option<Report>, seconds: f64) -> Judged {
 fn fill(judged: &mut Judged, report: &Report) {
     let answer = &judged.answer;
     let effects = &answer.effects;
-    judged.detected = report.verdict != Verdict::NoGap;
+    // who refuses for want of motion has not seen a gap
+    judged.detected = report.verdict != Verdict::NoGap && !report.refuses();
     let accepted_rank =
         report.ranking().iter().position(|(name, _)| effects.iter().any(|effect| accepted(name, effect)));
     judged.top1 = accepted_rank == Some(0);
     judged.top3 = accepted_rank.is_some_and(|rank| rank < 3);
     judged.exact = judged.detected && set_accepted(&report.names(), effects) && !effects.is_empty();
     judged.flagged_unknown = report.verdict == Verdict::Unexplained || report.unknown_probability >= UNKNOWN_FROM;
-    let in_class = report.sets().iter().any(|(names, _)| set_accepted(names, effects));
+    let in_class = report.sets().iter().any(|(names, _)| seen_accepted(names, effects));
+    let seen = judged.detected && !effects.is_empty() && seen_accepted(&report.names(), effects);
     judged.right = match (answer.kind, report.verdict) {
-        (Kind::Nothing, verdict) => verdict == Verdict::NoGap,
+        (Kind::Nothing, _) => !judged.detected,
+        (_, Verdict::CannotTell) if report.refuses() => below_detectable(answer),
         (_, Verdict::NoGap) => below_detectable(answer),
         (Kind::Beyond, _) => judged.flagged_unknown,
         (_, Verdict::CannotTell) => in_class,
-        (_, Verdict::Explained | Verdict::PartlyExplained) => judged.exact,
+        (_, Verdict::Explained | Verdict::PartlyExplained) => seen,
         (_, Verdict::Unexplained) => false,
     };
     judged.confidence = match report.verdict {
@@ -122,7 +138,7 @@ fn fill(judged: &mut Judged, report: &Report) {
     let on_sets: f64 = report
         .sets()
         .iter()
-        .filter(|(names, _)| set_accepted(names, effects))
+        .filter(|(names, _)| seen_accepted(names, effects))
         .map(|(_, probability)| probability)
         .sum();
     judged.on_truth = match answer.kind {

@@ -124,6 +124,12 @@ impl Report {
         self.effects.iter().map(|effect| effect.name.as_str()).collect()
     }
 
+    /// Whether the report says that the log does not serve, and names no cause.
+    #[must_use]
+    pub fn refuses(&self) -> bool {
+        self.verdict == Verdict::CannotTell && self.effects.is_empty() && self.alternatives.is_empty()
+    }
+
     /// Probability of the set that is reported: what alternatives and unknown leave.
     #[must_use]
     pub fn set_probability(&self) -> f64 {

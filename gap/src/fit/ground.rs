@@ -7,6 +7,7 @@ use gimbal_model_file::ModelFile;
 
 use super::draft::Draft;
 use super::path::Path;
+use super::resonance;
 use super::rest::{Raw, rest};
 use super::ripple;
 use super::signals::{Kept, Signals, peak, residual, scaled, valid};
@@ -14,7 +15,7 @@ use super::slip::{Slips, Turned, Turning};
 use super::turning::{at_once, impulse, impulse_nm, remembered, turning_noise, turns};
 use super::whiten::Loop;
 use super::{Columns, Problem, Whitener};
-use crate::library::{Candidate, Nuisance, Offer, candidates, hold, not_looked_for, nuisances, platform};
+use crate::library::{Candidate, Nuisance, Offer, candidates, hold, narrow, not_looked_for, nuisances, platform};
 use crate::record::{Record, Signal, rough};
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
@@ -29,7 +30,7 @@ pub(crate) struct Ground<'a> {
     noise: Vec<f64>,
     over_noise: Vec<f64>,
     nuisances: Vec<Nuisance>,
-    /// All but ripple, whose cycles show in what is left.
+    /// All but those whose lines show in what is left.
     candidates: Vec<Candidate>,
     not_looked_for: Vec<&'static str>,
     offer: Offer<'static>,
@@ -109,7 +110,7 @@ impl<'a> Ground<'a> {
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
         let mut more = Vec::new();
-        for candidate in self.ripples(&path, &whitener, &rest) {
+        for candidate in self.narrow(&path, &whitener, &rest) {
             columns.first.push(self.raw.len() + more.len());
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             more.extend(self.draft().probes(&candidate));
@@ -130,6 +131,7 @@ impl<'a> Ground<'a> {
             whitener,
             path,
             turns_at_once,
+            turns: self.turns.clone(),
             noise: self.noise.clone(),
             ceiling_nm: self.offer.sees_torque.then_some(self.offer.peak_torque_nm),
             sigma,
@@ -168,16 +170,17 @@ impl<'a> Ground<'a> {
         whitener.with_slips(slips)
     }
 
-    /// Ripple at the lines that stand out of what is left.
-    fn ripples(&self, path: &Path, whitener: &Whitener, rest: &Signals) -> Vec<Candidate> {
-        if self.not_looked_for.contains(&"torque_ripple") {
-            return Vec::new();
-        }
+    /// Effects whose lines are too narrow for a grid, where they stand out of what is left.
+    fn narrow(&self, path: &Path, whitener: &Whitener, rest: &Signals) -> Vec<Candidate> {
         let inputs = &self.record.inputs;
+        let period_s = inputs.period_s;
         let drive = path.drive(whitener, &whitener.apply(rest));
-        let cycles = ripple::cycles(path, &drive, &inputs.rel_rad(&self.nominal), &self.valid, inputs.period_s);
-        let offer = Offer { cycles: &cycles, ..self.offer };
-        candidates(inputs, &offer).into_iter().filter(|candidate| candidate.effect == "torque_ripple").collect()
+        let cycles = ripple::cycles(path, &drive, &inputs.rel_rad(&self.nominal), &self.valid, period_s);
+        let modes_hz = resonance::frequencies(path, whitener, &drive, &self.nominal.gimbal_rate_radps, period_s);
+        let offer = Offer { cycles: &cycles, modes_hz: &modes_hz, ..self.offer };
+        let mut narrow = narrow(&offer);
+        narrow.retain(|candidate| !self.not_looked_for.contains(&candidate.effect));
+        narrow
     }
 }
 
@@ -189,6 +192,7 @@ fn offer(record: &Record, nominal: &Prediction) -> Offer<'static> {
             .channel(Signal::MotorTorque)
             .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| high(&channel.values)),
         cycles: &[],
+        modes_hz: &[],
         sees_torque: sees(Signal::MotorTorque),
         sees_cross: !record.inputs.cross_radps.is_empty(),
     }

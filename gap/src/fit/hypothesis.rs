@@ -214,7 +214,7 @@ fn free(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Vec<Free> {
 fn limits(problem: &Problem, precision: &[f64]) -> Vec<f64> {
     let released = |place: usize| 1.0 / precision[problem.columns.begin + place].sqrt();
     let of = |(place, nuisance): (usize, &Nuisance)| {
-        if released(place) > 1.01 * nuisance.sigma { (16.0 * released(place)).min(0.8) } else { 4.0 * nuisance.sigma }
+        if released(place) > 1.01 * nuisance.sigma { (16.0 * released(place)).min(1.7) } else { 4.0 * nuisance.sigma }
     };
     problem.nuisances.iter().enumerate().map(of).collect()
 }

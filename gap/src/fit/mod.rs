@@ -1,6 +1,7 @@
 //! Fitting: whitened residuals, sensitivities, normal equations, and the search over effects.
 
 mod draft;
+mod gross;
 mod ground;
 mod hypothesis;
 mod linear;
@@ -11,6 +12,7 @@ mod problem;
 mod pull;
 mod refine;
 mod refit;
+mod resonance;
 mod rest;
 mod ripple;
 mod search;

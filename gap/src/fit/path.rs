@@ -93,4 +93,21 @@ impl Seen {
         let line = (hz / self.step_hz + 0.5) as usize;
         self.lines.get(line).copied().unwrap_or(0.0)
     }
+
+    /// At every line.
+    pub(crate) fn lines(&self) -> &[f64] {
+        &self.lines
+    }
+
+    /// What the channels see, all in all, of a torque of 1 N m that lasts so many rows.
+    pub(crate) fn of_box(&self, rows: usize) -> f64 {
+        let length = 2.0 * (self.lines.len() as f64 - 1.0).max(1.0);
+        let of = |(place, seen): (usize, &f64)| {
+            let half_turn = std::f64::consts::PI * place as f64 / length;
+            let sum = if place == 0 { rows as f64 } else { (half_turn * rows as f64).sin() / half_turn.sin() };
+            let both_sides = if place == 0 || place + 1 == self.lines.len() { 1.0 } else { 2.0 };
+            both_sides * sum * sum * seen / length
+        };
+        self.lines.iter().enumerate().map(of).sum()
+    }
 }

@@ -67,6 +67,8 @@ pub struct Problem<'a> {
     pub path: Path,
     /// Whether it does.
     pub turns_at_once: bool,
+    /// Rows at which it does.
+    pub turns: Vec<bool>,
     /// Rms of the noise of each channel.
     pub noise: Vec<f64>,
     /// Highest torque that was measured for some rows; none where it is not [N m].

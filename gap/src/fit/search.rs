@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::gross::gross;
 use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::refine::Effort;
@@ -68,7 +69,10 @@ pub(crate) fn search_from(problem: &mut Problem, null: Fit) -> Search {
     last.into_par_iter().for_each(|(_, fit)| polish(problem, fit));
     sort(problem, &mut fits);
     without_idle(problem, &mut fits);
-    let null = from_there(problem, null, &fits);
+    let (null, moved) = from_there(problem, null, &fits);
+    // what single effects seemed to bring may have been the way that the nominal parameters found meanwhile
+    let glimpses =
+        if moved { seen(&best_by_effect(problem, extensions(problem, &null), usize::MAX)) } else { glimpses };
     Search { null, fits, glimpses }
 }
 
@@ -81,8 +85,9 @@ pub(crate) fn null(problem: &Problem) -> Fit {
 fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
     let mut fits = Vec::new();
     let first = best_by_effect(problem, extensions(problem, null), usize::MAX);
-    let glimpses = first.iter().map(|extension| Glimpse { index: extension.index, gain: extension.gain }).collect();
+    let glimpses = seen(&first);
     fits.extend(saturated(problem, null));
+    fits.extend(gross(problem, null));
     fits.par_extend(
         first
             .par_iter()
@@ -121,12 +126,19 @@ fn saturated(problem: &Problem, null: &Fit) -> Option<Fit> {
     Some(fit).filter(|fit| fit.square < null.square - PROMISE)
 }
 
-/// The best fit may have found a way down that the nominal parameters missed: they start there once more.
-fn from_there(problem: &Problem, null: Fit, fits: &[Fit]) -> Fit {
-    let Some(best) = fits.first() else { return null };
+/// The best fit may have found a way down that the nominal parameters missed: they start there once more. And whether
+/// that led further.
+fn from_there(problem: &Problem, null: Fit, fits: &[Fit]) -> (Fit, bool) {
+    let Some(best) = fits.first() else { return (null, false) };
     let again = refine(problem, &Set::default(), &[], Some(best), Effort::Full);
     let cost = |fit: &Fit| fit.square + fit.prior;
-    if again.volume.is_finite() && cost(&again) < cost(&null) { again } else { null }
+    let further = again.volume.is_finite() && cost(&again) < cost(&null);
+    let moved = further && cost(&null) - cost(&again) > 1.0;
+    (if further { again } else { null }, moved)
+}
+
+fn seen(extensions: &[Extension]) -> Vec<Glimpse> {
+    extensions.iter().map(|extension| Glimpse { index: extension.index, gain: extension.gain }).collect()
 }
 
 /// A set with a member that is zero within its error was only the better way down: the set without it starts there.

@@ -3,23 +3,27 @@
 
 use realfft::RealFftPlanner;
 
-/// Steps that are tried [rad].
-const FINEST_RAD: f64 = 8e-7;
+/// Finest step that is tried, over the noise: any converter has steps, and finer ones drown. Coarsest step [rad].
+const FINEST: f64 = 2.5;
 const COARSEST_RAD: f64 = 3e-5;
-/// Width of a bin of the histograms [rad], and their number.
-const BIN_RAD: f64 = 1e-7;
-const BINS: usize = 1 << 16;
+/// Bins of the histograms over the finest step, and their number.
+const BINS_A_STEP: f64 = 8.0;
+const BINS: usize = 1 << 17;
+/// Share of the strongest line from which on the first is no chance.
+const HARMONIC: f64 = 0.7;
 /// Share of the samples, all in step, that a line must stand out by.
 const STANDS_OUT: f64 = 0.2;
 
-/// The step of the pick-off, if its samples lie on a grid.
+/// The step of the pick-off, if its samples lie on a grid that stands out of their noise [rad].
 #[must_use]
-pub(crate) fn step_rad(theta: &[f64], predicted: &[f64], valid: &[bool]) -> Option<f64> {
+pub(crate) fn step_rad(theta: &[f64], predicted: &[f64], valid: &[bool], noise_rad: f64) -> Option<f64> {
+    let finest_rad = FINEST * noise_rad;
+    let bin_rad = finest_rad / BINS_A_STEP;
     let mut measured = vec![0.0; BINS];
     let mut expected = vec![0.0; BINS];
     let mut count = 0.0;
     for k in (0..theta.len()).filter(|&k| valid[k]) {
-        if let (Some(a), Some(b)) = (bin(theta[k]), bin(predicted[k])) {
+        if let (Some(a), Some(b)) = (bin(theta[k] / bin_rad), bin(predicted[k] / bin_rad)) {
             measured[a] += 1.0;
             expected[b] += 1.0;
             count += 1.0;
@@ -32,19 +36,26 @@ pub(crate) fn step_rad(theta: &[f64], predicted: &[f64], valid: &[bool]) -> Opti
     let (mut a, mut b) = (transform.make_output_vec(), transform.make_output_vec());
     transform.process(&mut measured, &mut a).ok()?;
     transform.process(&mut expected, &mut b).ok()?;
-    let step = 1.0 / (BINS as f64 * BIN_RAD);
+    let step = 1.0 / (BINS as f64 * bin_rad);
     let strength = |line: usize| (a[line].norm() - b[line].norm()) / count;
     let lines = (0..a.len()).filter(|&line| {
         let inverse = line as f64 * step;
-        inverse > 1.0 / COARSEST_RAD && inverse < 1.0 / FINEST_RAD
+        inverse > 1.0 / COARSEST_RAD && inverse < 1.0 / finest_rad
     });
-    let best = lines.max_by(|x, y| strength(*x).total_cmp(&strength(*y)))?;
-    (strength(best) > STANDS_OUT).then(|| 1.0 / (best as f64 * step))
+    let strongest = lines.clone().map(strength).fold(0.0, f64::max);
+    if strongest < STANDS_OUT {
+        return None;
+    }
+    // a grid has lines at the multiples of its first, all as strong
+    let first = lines.clone().find(|line| strength(*line) > HARMONIC * strongest)?;
+    let near = lines.filter(|line| line.abs_diff(first) <= 2);
+    let best = near.max_by(|x, y| strength(*x).total_cmp(&strength(*y)))?;
+    Some(1.0 / (best as f64 * step))
 }
 
-/// The bin of an angle, about the middle.
+/// The bin of an angle over their width, about the middle.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the bins")]
-fn bin(angle_rad: f64) -> Option<usize> {
-    let place = (angle_rad / BIN_RAD + BINS as f64 / 2.0).floor();
+fn bin(angle: f64) -> Option<usize> {
+    let place = (angle + BINS as f64 / 2.0).floor();
     (place >= 0.0 && place < BINS as f64).then_some(place as usize)
 }

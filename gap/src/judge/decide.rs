@@ -10,21 +10,45 @@ use super::weigh::{BEYOND, Weighed, weigh};
 use crate::fit::{Fit, Problem, Search};
 use crate::record::Signal;
 
-/// Nats that count as one in probabilities: a constant, and a share of what the best set gains.
-const SCALE: f64 = 2.0;
+/// Nats that count as one in probabilities, of a single effect and of one more: from logs with open answers, as what the
+/// noise is not known for and what the formulation leaves weigh in; and the share of what the best set gains.
+const SCALE: f64 = 3.5;
+const SCALE_BESIDE: f64 = 5.0;
 const SCALE_SHARE: f64 = 1e-5;
+/// The same where evidence is as small as chance makes it, and how far below that reaches [nats].
+const SCALE_OF_CHANCE: f64 = 1.3;
+const CHANCE: f64 = 1.0;
+/// Probability of a cause that nothing shows, without and with an effect that explains the log.
+const UNSEEN: [f64; 2] = [0.1, 0.04];
 /// Share of the likeliest set's probability from which on another is not told apart from it.
-const RIVAL: f64 = 0.1;
+const RIVAL: f64 = 0.27;
 /// Least probability that is reported.
 const POSSIBLE: f64 = 0.002;
-/// Standard deviations that what is left may stand out by, and the spread of that limit.
-const LEFT_OVER: f64 = 16.0;
-const LEFT_OVER_SCALE: f64 = 2.0;
-/// What torques of no effect may take of it beyond chance, and the spread of that limit [nats].
-const STRANGE: f64 = 24.0;
-const STRANGE_SCALE: f64 = 2.5;
+/// What may be left where the bearing turns around slowly, or all the time: the noise of the rate is less well known
+/// there.
+const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 30.0, strange_scale: 2.5 };
+/// The same where it turns around at once.
+const AT_ONCE: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 22.0, strange_scale: 2.0 };
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
+
+/// What may be left without being told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Limits {
+    /// Standard deviations that what is left may stand out by, and the spread of that limit.
+    left_over: f64,
+    left_over_scale: f64,
+    /// What torques of no effect may take of it beyond chance, and the spread of that limit [nats].
+    strange: f64,
+    strange_scale: f64,
+}
+
+impl Limits {
+    fn of(problem: &Problem) -> Self {
+        if problem.turns_at_once { AT_ONCE } else { SLOWLY }
+    }
+}
+
 /// What it comes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
@@ -95,6 +119,8 @@ pub struct Decision {
     pub left_over: [f64; 2],
     /// What is left, tried on torques of no effect, the likeliest first.
     pub strangers: Vec<Stranger>,
+    /// What these may take beyond chance without being told of [nats].
+    pub strange_limit: f64,
     /// Remarks.
     pub notes: Vec<String>,
 }
@@ -103,7 +129,7 @@ impl Decision {
     /// What the rest goes with, where it does with something.
     #[must_use]
     pub fn goes_with(&self) -> Option<&Stranger> {
-        self.strangers.first().filter(|stranger| stranger.nats() > STRANGE)
+        self.strangers.first().filter(|stranger| stranger.nats() > self.strange_limit)
     }
 
     /// Sets that are not told apart from one: a tenth as probable, and more than it with something added.
@@ -142,8 +168,11 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let strangers = strangers(problem, fit);
     let strange = strangers.first().map_or(0.0, Stranger::nats);
     let taken = 0.5 * (search.null.square + search.null.prior - fit.square - fit.prior);
-    let unknown = unknown(after, after / before.max(after).max(1e-9), LEFT_OVER, LEFT_OVER_SCALE, chosen.is_some())
-        .max(unknown(strange, strange / (strange + taken).max(1e-9), STRANGE, STRANGE_SCALE, chosen.is_some()));
+    let limits = Limits::of(problem);
+    let found = chosen.is_some();
+    let left = unknown(after, after / before.max(after).max(1e-9), limits.left_over, limits.left_over_scale, found);
+    let share = strange / (strange + taken).max(1e-9);
+    let unknown = left.max(unknown(strange, share, limits.strange, limits.strange_scale, found));
     let mut decision = Decision {
         verdict: Verdict::NoGap,
         found: Vec::new(),
@@ -153,6 +182,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         chosen,
         left_over: [before, after],
         strangers,
+        strange_limit: limits.strange,
         notes: Vec::new(),
     };
     if let Some(best) = best {
@@ -161,7 +191,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
             decision.found.clear();
             decision.chosen = None;
             Verdict::Unexplained
-        } else if after > LEFT_OVER + LEFT_OVER_SCALE || strange > STRANGE + STRANGE_SCALE {
+        } else if after > limits.left_over + limits.left_over_scale || strange > limits.strange + limits.strange_scale {
             Verdict::PartlyExplained
         } else if decision.rivals(&best.effects).is_empty() {
             Verdict::Explained
@@ -198,11 +228,28 @@ struct Probabilities {
 }
 
 impl Probabilities {
+    /// Each set beside the likeliest part of it: a second effect is as likely as what it brings beside the first.
     fn new(sets: &[Weighed]) -> Self {
-        let top = sets.iter().map(|set| set.nats - set.rare).fold(0.0, f64::max);
-        let scale = SCALE + SCALE_SHARE * top;
-        let weights: Vec<f64> = sets.iter().map(|set| ((set.nats - set.rare - top) / scale).exp()).collect();
-        let nothing = (-top / scale).exp();
+        let top = sets.iter().map(|set| set.nats).fold(0.0, f64::max);
+        let mut order: Vec<usize> = (0..sets.len()).collect();
+        order.sort_by_key(|&index| sets[index].effects.len());
+        let mut logs = vec![f64::NEG_INFINITY; sets.len()];
+        for &index in &order {
+            let set = &sets[index];
+            let part = |other: &&usize| {
+                sets[**other].effects.len() < set.effects.len() && contains(&set.effects, &sets[**other].effects)
+            };
+            let likeliest = order.iter().filter(part).max_by(|a, b| logs[**a].total_cmp(&logs[**b]));
+            let (log, nats, rare) = likeliest
+                .filter(|&&other| logs[other] > 0.0)
+                .map_or((0.0, 0.0, 0.0), |&other| (logs[other], sets[other].nats, sets[other].rare));
+            let beyond = set.nats - nats - (set.rare - rare);
+            let scale = SCALE_SHARE * top + if set.effects.len() > 1 { SCALE_BESIDE } else { SCALE };
+            logs[index] = log + (beyond / scale).min((beyond + CHANCE) / SCALE_OF_CHANCE);
+        }
+        let highest = logs.iter().copied().fold(0.0, f64::max);
+        let weights: Vec<f64> = logs.iter().map(|log| (log - highest).exp()).collect();
+        let nothing = (-highest).exp();
         let sum = nothing + weights.iter().sum::<f64>();
         Self { sets: weights.iter().map(|weight| weight / sum).collect(), nothing: nothing / sum }
     }
@@ -229,11 +276,14 @@ fn contains(larger: &[&str], smaller: &[&str]) -> bool {
 fn unknown(stands_out: f64, share: f64, limit: f64, scale: f64, found: bool) -> f64 {
     let stands_out = 1.0 / (1.0 + (-(stands_out - limit) / scale).exp());
     let share = if found { share } else { 1.0 };
-    (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES)).clamp(0.02, 0.98)
+    (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES))
+        .clamp(UNSEEN[usize::from(found)], 0.98)
 }
 
-/// What the samples show by themselves: a stop elsewhere, a grid of angles.
+/// What the samples show by themselves: a stop elsewhere, as the pick-off reads it, and a grid of angles.
 fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut Decision) {
+    let scale = |found: &Found| if found.effect == "pickoff_scale" { found.values[0] } else { 0.0 };
+    let pickoff = 1.0 + decision.found.iter().map(scale).sum::<f64>();
     let mut add = |effect: &'static str, value: f64, error: f64, probability: f64| {
         if Effect::from_name(effect).is_none() || problem.not_looked_for.contains(&effect) {
             return;
@@ -247,20 +297,21 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
             set.effects.push(effect);
         }
         if decision.verdict == Verdict::NoGap
-            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 10.0 * LEFT_OVER
+            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 10.0 * SLOWLY.left_over
         {
             decision.verdict = Verdict::Explained;
             decision.unknown_probability = decision.unknown_probability.min(0.05);
         }
     };
     if let Some(plateau) = problem.record.plateau_rad {
-        let change = plateau / problem.stop_rad - 1.0;
-        if change.abs() > BEYOND * tolerance.stop_angle {
+        let change = plateau / (problem.stop_rad * pickoff) - 1.0;
+        if change.abs() > BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale) {
             add("stop_angle", change, problem.noise[0] / problem.stop_rad, 0.95);
         }
     }
     if let Some(theta) = problem.record.channel(Signal::GyroAngle)
-        && let Some(step) = comb::step_rad(&theta.values, &fit.prediction.gyro_angle_rad, &theta.valid)
+        && let Some(step) =
+            comb::step_rad(&theta.values, &fit.prediction.gyro_angle_rad, &theta.valid, problem.noise[0])
     {
         add("pickoff_quantisation", step, 1e-3 * step, 0.97);
     }

@@ -9,6 +9,7 @@ mod detectable;
 mod experiment;
 mod left_over;
 mod lines;
+mod moments;
 mod portrait;
 mod shrink;
 mod strange;

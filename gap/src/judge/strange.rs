@@ -44,12 +44,9 @@ impl fmt::Display for Stranger {
     }
 }
 
-/// Every group at a fit, the one that takes most first; none where the bearing turns around slowly or all the time.
+/// Every group at a fit, the one that takes most first.
 #[must_use]
 pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
-    if !problem.turns_at_once {
-        return Vec::new();
-    }
     let linear = Linear::of(problem);
     let (_, precision) = problem.chosen(&fit.set.0);
     let begin = problem.columns.begin;

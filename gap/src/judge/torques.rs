@@ -1,6 +1,7 @@
 //! Torques that an effect might be, in groups by what they are functions of.
 
 use super::lines::line;
+use super::moments::moments;
 use crate::fit::{Fit, Problem};
 
 /// Rms of each torque [N m].
@@ -13,6 +14,11 @@ const REMEMBERED_S: [f64; 4] = [0.3, 1.0, 4.0, 15.0];
 const HEAT_S: f64 = 5.0;
 /// Torque over its rms within which its sign is no step.
 const SOFT: f64 = 0.02;
+
+/// What noise takes of torques that are functions of something, more than its spectrum says, as the bearing turns around
+/// slowly and at once; and of a slow torque in time, as noise wanders [nats].
+const WARY_NATS: [f64; 2] = [18.0, 0.0];
+const WANDERS_NATS: [f64; 2] = [40.0, 12.0];
 
 type Series = Vec<f64>;
 type Functions = (&'static str, Vec<Series>);
@@ -33,11 +39,19 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     functions.extend(motion.of_slip());
     functions.extend(motion.of_motor());
     functions.extend(motion.of_specific_force());
+    let way = usize::from(problem.turns_at_once);
+    let choice = |of: &str| if of == "time" { WANDERS_NATS[way] } else { WARY_NATS[way] };
     let mut groups: Vec<Group> =
-        functions.into_iter().map(|(of, torques)| Group { of, torques, choice: 0.0 }).collect();
+        functions.into_iter().map(|(of, torques)| Group { of, choice: choice(of), torques }).collect();
     let drive = problem.path.drive(&problem.whitener, &fit.residual);
     let tone = line(problem, &drive);
-    groups.extend(tone.map(|line| Group { of: "a line in time", torques: line.torques, choice: line.choice }));
+    groups.extend(tone.map(|line| Group {
+        of: "a line in time",
+        torques: line.torques,
+        choice: line.choice + WARY_NATS[way],
+    }));
+    let few = moments(problem, &drive);
+    groups.extend(few.map(|few| Group { of: "a few moments", torques: few.torques, choice: few.choice }));
     for torque in groups.iter_mut().flat_map(|group| &mut group.torques) {
         *torque = scaled(torque).iter().map(|value| UNIT_NM * value).collect();
     }

@@ -21,7 +21,8 @@ pub struct Candidate {
 
 /// Limits of the torque that are tried, over the largest torque.
 const CEILINGS_SEEN: [f64; 6] = [1.0, 0.985, 0.965, 0.93, 0.85, 0.7];
-const CEILINGS_UNSEEN: [f64; 13] = [1.0, 0.99, 0.975, 0.96, 0.945, 0.93, 0.915, 0.9, 0.88, 0.855, 0.82, 0.77, 0.7];
+const CEILINGS_UNSEEN: [f64; 16] =
+    [1.0, 0.99, 0.975, 0.96, 0.945, 0.93, 0.915, 0.9, 0.88, 0.855, 0.82, 0.77, 0.7, 0.6, 0.5, 0.4];
 
 /// What the log offers to the effects.
 #[derive(Debug, Clone, Copy, Default)]
@@ -30,6 +31,8 @@ pub struct Offer<'a> {
     pub peak_torque_nm: f64,
     /// Cycles a revolution at which the torque residual has lines.
     pub cycles: &'a [f64],
+    /// Frequencies at which part of the inertia may sit on a spring [Hz].
+    pub modes_hz: &'a [f64],
     /// Whether the motor torque is measured.
     pub sees_torque: bool,
     /// Whether the cross rate is.
@@ -70,16 +73,25 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
             let settings: Vec<Vec<f64>> = shares.iter().map(|share| vec![share * offer.peak_torque_nm]).collect();
             secants(effect, &settings)
         }
-        "torque_ripple" => {
-            let one = |cycles: f64| {
-                let quarter = std::f64::consts::FRAC_PI_2;
-                let probes = vec![(vec![1e-4, cycles, 0.0], 1e-4), (vec![1e-4, cycles, quarter], 1e-4)];
-                Candidate { effect: name, probes, prior: vec![(0.0, 5e-4); 2], releases: &[], siblings: 100 }
-            };
-            offer.cycles.iter().copied().map(one).collect()
-        }
+        // lines too narrow for a grid
+        "torque_ripple" => Vec::new(),
         _ => grid(effect, &[effect.typical()]),
     }
+}
+
+/// Candidates at the lines that are on offer.
+#[must_use]
+pub fn narrow(offer: &Offer) -> Vec<Candidate> {
+    let ripple = |cycles: &f64| {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let probes = vec![(vec![1e-4, *cycles, 0.0], 1e-4), (vec![1e-4, *cycles, quarter], 1e-4)];
+        Candidate { effect: "torque_ripple", probes, prior: vec![(0.0, 5e-4); 2], releases: &[], siblings: 100 }
+    };
+    let mode = |hz: &f64| {
+        let probes = vec![(vec![0.015, *hz, 0.03], 0.015)];
+        Candidate { effect: "flexible_mode", probes, prior: vec![(0.0, 0.075)], releases: &[], siblings: 100 }
+    };
+    offer.cycles.iter().map(ripple).chain(offer.modes_hz.iter().map(mode)).collect()
 }
 
 /// The nominal parameters that an effect shifts; none where it adds something.

@@ -7,6 +7,6 @@ mod nuisance;
 
 pub use apply::apply;
 pub(crate) use candidates::releases;
-pub use candidates::{Candidate, Offer, candidates};
+pub use candidates::{Candidate, Offer, candidates, narrow};
 pub use model::{hold, not_looked_for, platform};
 pub use nuisance::{Nuisance, nuisances};

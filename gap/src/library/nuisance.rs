@@ -27,7 +27,7 @@ pub struct Nuisance {
     pub step: f64,
     shift: fn(&mut Physics, f64),
     /// Whether a shift is added; others are logarithms of a ratio, so that scales of all torques together are a line.
-    absolute: bool,
+    pub absolute: bool,
 }
 
 impl Nuisance {

@@ -155,7 +155,7 @@ impl Record {
         let period_s = self.inputs.period_s;
         let Some(theta) = self.channels.iter().find(|channel| channel.signal == Signal::GyroAngle) else { return };
         let peak = theta.values.iter().copied().filter(|value| value.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
-        if peak < 0.45 * config.gyro.stop_angle_rad {
+        if peak < 0.2 * config.gyro.stop_angle_rad {
             return;
         }
         let least = (0.008 / period_s) as usize;

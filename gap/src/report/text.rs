@@ -91,7 +91,13 @@ fn beside(decision: &Decision) -> String {
     }
     let possible: Vec<String> =
         decision.alternatives.iter().filter(|own| own.probability > WORTH_A_WORD).take(4).map(set).collect();
-    if possible.is_empty() { String::new() } else { format!("  not excluded: {}\n", possible.join(", ")) }
+    if possible.is_empty() {
+        return String::new();
+    }
+    // evidence that makes an effect likelier than not is not yet what a verdict asks for
+    let hinted = decision.verdict == Verdict::NoGap && decision.alternatives[0].probability > 0.5;
+    let how = if hinted { "too weak to be named" } else { "not excluded" };
+    format!("  {how}: {}\n", possible.join(", "))
 }
 
 /// How far what is left stands out, and what it goes with.

@@ -132,6 +132,11 @@ where
     [x + about_y * z - about_z * y, y + about_z * x - about_x * z, z + about_x * y - about_y * x]
 }
 
+/// What is smooth, so many rows later.
+pub(super) fn later(values: &[f64], rows: f64) -> Vec<f64> {
+    Later::by(rows).curve(values)
+}
+
 /// Some rows and a part of one later.
 struct Later {
     rows: isize,
@@ -158,6 +163,17 @@ impl Later {
     /// On the line between two rows.
     fn line(&self, values: &[f64]) -> Vec<f64> {
         self.rows(values, 0).zip(self.rows(values, 1)).map(|(a, b)| a + self.share * (b - a)).collect()
+    }
+
+    /// On the cubic through four rows (Catmull and Rom).
+    fn curve(&self, values: &[f64]) -> Vec<f64> {
+        let x = self.share;
+        let around =
+            self.rows(values, -1).zip(self.rows(values, 0)).zip(self.rows(values, 1).zip(self.rows(values, 2)));
+        let cubic = |((a, b), (c, d)): ((f64, f64), (f64, f64))| {
+            b + 0.5 * x * (c - a + x * (2.0 * a - 5.0 * b + 4.0 * c - d + x * (3.0 * (b - c) + d - a)))
+        };
+        around.map(cubic).collect()
     }
 
     /// At the end of the period in which the later instant is.

@@ -56,7 +56,7 @@ impl<'a, const L: usize> Law<'a, L> {
             load_factor: of(&|own| own.friction.load_factor),
             asymmetry: of(&|own| own.friction.asymmetry),
             slip_radps: of(&|own| own.config.bearing.slip_rate_radps),
-            stop_rad: of(&|own| own.config.gyro.stop_angle_rad),
+            stop_rad: of(&Physics::stop_rad),
             unbalance_kg_m: [of(&|own| own.config.unbalance.x_kg_m), of(&|own| own.config.unbalance.y_kg_m)],
             constant_nm: of(&|own| own.constant_nm),
             anisoelasticity: of(&|own| own.anisoelasticity),

@@ -329,13 +329,14 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
 
     #[cold]
     fn contact_of(&self, state: &mut Running<N, L>, lane: usize) {
-        let gyro = &self.law.physics[lane].config.gyro;
+        let physics = self.law.physics[lane];
+        let (gyro, stop_rad) = (&physics.config.gyro, physics.stop_rad());
         let (theta, rate) = (state.x[THETA][lane], state.x[THETA_RATE][lane]);
         let stop = f64::from(state.stop[lane]);
         if state.stop[lane] == 0 {
-            if theta.abs() >= gyro.stop_angle_rad && theta * rate > 0.0 {
+            if theta.abs() >= stop_rad && theta * rate > 0.0 {
                 state.stop[lane] = if theta > 0.0 { 1 } else { -1 };
-                state.x[THETA][lane] = gyro.stop_angle_rad * f64::from(state.stop[lane]);
+                state.x[THETA][lane] = stop_rad * f64::from(state.stop[lane]);
                 state.x[THETA_RATE][lane] = 0.0;
             }
         } else if (gyro.angular_momentum_nm_s * state.x[PHI_RATE][lane] + state.u[1][lane]) * stop < 0.0 {

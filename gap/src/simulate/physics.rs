@@ -122,6 +122,11 @@ impl Default for Measurement {
 }
 
 impl Physics {
+    /// Where the float stops [rad]; the configured angle is what the pick-off reads there, less its bias.
+    pub(super) fn stop_rad(&self) -> f64 {
+        self.config.gyro.stop_angle_rad / self.measurement.pickoff_factor
+    }
+
     /// The nominal platform.
     #[must_use]
     pub fn nominal(config: &Config) -> Self {

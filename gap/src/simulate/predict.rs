@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::bearing::Viscous;
 use super::chain::{Chain, FULL, PLAIN, THETA, TORQUE};
 use super::discrete::Steps;
+use super::inputs::later;
 use super::machine::Machine;
 use super::{Inputs, Physics};
 
@@ -53,8 +54,16 @@ impl Prediction {
     }
 
     /// What the sensors make of it.
-    fn logged(&mut self, physics: &Physics) {
+    ///
+    /// Inputs that are logged late are outputs that are logged early. Inputs between their rows would be smoother than
+    /// in them: their noise would weigh less, and every log look like a late one.
+    fn logged(&mut self, physics: &Physics, period_s: f64) {
         let sensors = physics.measurement;
+        if sensors.skew_s != 0.0 {
+            for output in [&mut self.gyro_angle_rad, &mut self.motor_torque_nm, &mut self.gimbal_angle_rad] {
+                *output = later(output, sensors.skew_s / period_s);
+            }
+        }
         for theta in &mut self.gyro_angle_rad {
             *theta = *theta * sensors.pickoff_factor + sensors.pickoff_bias_rad;
         }
@@ -135,7 +144,6 @@ struct Kind {
     presliding: bool,
     no_bearing: bool,
     rows: usize,
-    skew: u64,
     /// What is slower lane by lane: shapes of friction, cable or ripple, a motor with corners.
     slower: [bool; 3],
 }
@@ -148,7 +156,6 @@ impl Kind {
             presliding: physics.friction.presliding_rad > 0.0,
             no_bearing: physics.config.bearing.count == 0,
             rows: variant.rows,
-            skew: physics.measurement.skew_s.to_bits(),
             slower: [
                 physics.friction.per_g != 0.0
                     || physics.friction.stribeck.is_some()
@@ -162,21 +169,13 @@ impl Kind {
 
 /// Predictions of one kind.
 fn together<const L: usize>(variants: [&Variant; L], inputs: &Inputs) -> [Prediction; L] {
-    let shifted;
-    let skew_s = variants[0].physics.measurement.skew_s;
-    let inputs = if skew_s == 0.0 {
-        inputs
-    } else {
-        shifted = inputs.advanced(skew_s);
-        &shifted
-    };
     let mut predictions = if Chain::states(&variants[0].physics) == PLAIN {
         run::<PLAIN, L>(variants, inputs)
     } else {
         run::<FULL, L>(variants, inputs)
     };
     for (prediction, variant) in predictions.iter_mut().zip(variants) {
-        prediction.logged(&variant.physics);
+        prediction.logged(&variant.physics, inputs.period_s);
     }
     predictions
 }

@@ -209,7 +209,7 @@ pub(crate) const TABLE: [Entry; 33] = [
         Structure,
         &[
             parameter("inertia_ratio", "1", [5e-3, 3e-2, 0.15], NotNegative),
-            parameter("frequency_hz", "Hz", [30.0, 150.0, 400.0], Positive),
+            parameter("frequency_hz", "Hz", [12.0, 150.0, 400.0], Positive),
             parameter("damping_ratio", "1", [5e-3, 3e-2, 0.2], NotNegative),
         ],
         LOOP,

@@ -1,0 +1,55 @@
+//! A nominal parameter that is off by tens of percent: equations that are linear at its nominal value do not lead there,
+//! so it is tried at a few values first.
+
+use rayon::prelude::*;
+
+use super::hypothesis::{Hypothesis, Point};
+use super::refine::Effort;
+use super::{Fit, Problem, Set, refine};
+
+/// A fit of the nominal parameters leaves so many times the noise from where on this is worth the time.
+const GROSS: f64 = 2.0;
+/// Relative changes that are tried.
+const CHANGES: [f64; 6] = [-0.75, -0.5, -0.25, 0.3, 0.6, 1.0];
+/// Parameters that are fitted from their best change.
+const FITTED: usize = 3;
+
+/// A parameter at one of its values.
+struct Start {
+    candidate: usize,
+    square: f64,
+    from: Fit,
+}
+
+/// Fits of single nominal parameters that start far from nominal.
+pub(crate) fn gross(problem: &Problem, null: &Fit) -> Vec<Fit> {
+    if null.square < GROSS * problem.whitener.count() as f64 {
+        return Vec::new();
+    }
+    let mut starts: Vec<Start> =
+        (0..problem.candidates.len()).into_par_iter().filter_map(|candidate| best(problem, null, candidate)).collect();
+    starts.sort_by(|a, b| a.square.total_cmp(&b.square));
+    starts.truncate(FITTED);
+    let fit = |start: &Start| {
+        let values = vec![vec![0.0; problem.candidates[start.candidate].releases.len()]];
+        refine(problem, &Set(vec![start.candidate]), &values, Some(&start.from), Effort::Thorough)
+    };
+    starts.par_iter().map(fit).filter(|fit| fit.square < null.square).collect()
+}
+
+/// The change of a candidate's parameter that leaves least, all else nominal.
+fn best(problem: &Problem, null: &Fit, candidate: usize) -> Option<Start> {
+    let [release] = problem.candidates[candidate].releases else { return None };
+    let place = problem.nuisances.iter().position(|own| own.name == *release && !own.absolute)?;
+    let set = Set(vec![candidate]);
+    let hypothesis = Hypothesis::new(problem, &set, &[vec![0.0]]);
+    let start = |change: f64| {
+        let mut from = null.clone();
+        from.begin = problem.begin.clone();
+        from.shifts.fill(0.0);
+        from.shifts[place] = change.ln_1p();
+        let point = Point { values: vec![vec![0.0]], ..from.point(problem) };
+        Start { candidate, square: hypothesis.evaluate(&point).square, from }
+    };
+    CHANGES.map(start).into_iter().filter(|start| start.square.is_finite()).min_by(|a, b| a.square.total_cmp(&b.square))
+}
