@@ -244,7 +244,7 @@ impl TimeWatch {
         // intervals that scatter about the period are jitter, and of its rate
         let period_s = watch.report.period_s;
         let near = |(count, sum_s): &(u64, f64)| (sum_s / *count as f64 - period_s).abs() < OTHER_RATE * period_s;
-        let (own, mut lengths): (Vec<(u64, f64)>, Vec<(u64, f64)>) = watch.classes.values().copied().partition(near);
+        let (own, mut lengths): (Vec<_>, Vec<_>) = watch.classes.values().copied().partition(near);
         let regular = (watch.regular, watch.regular as f64 * period_s);
         lengths.push(own.iter().fold(regular, |all, class| (all.0 + class.0, all.1 + class.1)));
         let all: u64 = lengths.iter().map(|(count, _)| count).sum();

@@ -10,9 +10,10 @@ use super::path::Path;
 use super::resonance;
 use super::rest::{Raw, rest};
 use super::ripple;
+use super::shapes::Impulse;
 use super::signals::{Kept, Signals, peak, residual, scaled, valid};
 use super::slip::{Slips, Turned, Turning};
-use super::turning::{at_once, impulse, impulse_nm, remembered, turning_noise, turns};
+use super::turning::{at_once, impulse, remembered, turning_noise, turns};
 use super::whiten::Loop;
 use super::{Columns, Problem, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, narrow, not_looked_for, nuisances, platform};
@@ -39,8 +40,8 @@ pub(crate) struct Ground<'a> {
     /// Sensitivities and nominal residual over the noise.
     raw: Vec<Kept>,
     target: Signals,
-    /// Each channel after an impulse of torque, over the noise.
-    impulse: Signals,
+    /// After an impulse of torque.
+    impulse: Impulse,
     valid: Vec<bool>,
     /// Rows at which the bearing turns around, and what the noise of the rate does there.
     turns: Vec<bool>,
@@ -74,7 +75,7 @@ impl<'a> Ground<'a> {
             record,
             stop_rad: model.config.gyro.stop_angle_rad,
             target: scaled(target, &over_noise),
-            impulse: scaled(impulse(&base, record), &over_noise),
+            impulse: impulse(&base, record, &over_noise),
             valid: valid(record),
             turns: turns(&base, record, &nominal),
             base,
@@ -106,7 +107,7 @@ impl<'a> Ground<'a> {
         let turns_at_once = at_once(&self.turns);
         let whitener = self.whitener(&rest, turns_at_once);
         let period_s = self.record.inputs.period_s;
-        let path = Path::new(&whitener, &self.impulse, impulse_nm(&self.base, self.record), period_s);
+        let path = Path::new(&whitener, &self.impulse.channels, self.impulse.torque_nm, period_s);
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
         let mut more = Vec::new();
@@ -155,7 +156,8 @@ impl<'a> Ground<'a> {
         let turning_noise = if turns_at_once { 0.0 } else { turning_noise(base, record, nominal, turns) };
         let (period_s, rate_noise) = (record.inputs.period_s, &record.rate_noise);
         let turning = &remembered(turns);
-        let behind = Loop { impulse: &self.impulse, turning, turning_noise, rate_noise, period_s };
+        let signals: Vec<Signal> = record.channels.iter().map(|channel| channel.signal).collect();
+        let behind = Loop { impulse: &self.impulse, signals: &signals, turning, turning_noise, rate_noise, period_s };
         let whitener = Whitener::new(rest, &self.valid, behind);
         if !turns_at_once {
             return whitener;

@@ -16,6 +16,7 @@ mod resonance;
 mod rest;
 mod ripple;
 mod search;
+mod shapes;
 mod signals;
 mod slip;
 mod turning;

@@ -1,6 +1,7 @@
 //! The loop behind the whitening: its response to a torque, and where the bearing turns around.
 
-use super::signals::{Signals, peak, predicted};
+use super::shapes::Impulse;
+use super::signals::{Signals, peak, predicted, scaled};
 use crate::record::Record;
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
@@ -13,8 +14,8 @@ const SLOWLY: usize = 16;
 /// Rows for which the loop remembers a disturbance.
 const AFTER_TURNING: usize = 400;
 
-/// Every channel after an impulse of torque on the gimbal, bearings and unbalance aside.
-pub(crate) fn impulse(base: &Physics, record: &Record) -> Signals {
+/// The loop after an impulse of torque on the gimbal, bearings and unbalance aside; its channels over their noise.
+pub(crate) fn impulse(base: &Physics, record: &Record, over_noise: &[f64]) -> Impulse {
     let mut physics = base.clone();
     physics.config.bearing.count = 0;
     physics.config.unbalance.x_kg_m = 0.0;
@@ -31,7 +32,12 @@ pub(crate) fn impulse(base: &Physics, record: &Record) -> Signals {
     let mut begin = Begin::at(&physics, &inputs, 0.0, Some(0.0));
     begin.state[0] = IMPULSE_RADPS;
     let run = predict(&physics, &inputs, &begin, rows);
-    record.channels.iter().map(|channel| predicted(channel.signal, &run).to_vec()).collect()
+    let channels: Signals = record.channels.iter().map(|channel| predicted(channel.signal, &run).to_vec()).collect();
+    Impulse {
+        channels: scaled(channels, over_noise),
+        torque_nm: impulse_nm(base, record),
+        loop_signals: [run.gyro_angle_rad, run.motor_torque_nm],
+    }
 }
 
 /// The torque of that impulse, over one row [N m].

@@ -1,21 +1,20 @@
 //! Whitening: each channel divided by the spectrum of its noise.
 //!
 //! ```text
-//! P(f) = w + l |G(f)|^2 + b / (1 + (f / f_c)^2)         w, l, b >= 0
+//! P(f) = w + l |G(f)|^2 + n |N(f)|^2 + b / (1 + (f / f_c)^2)         w, l, n, b >= 0
 //! ```
 //!
 //! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
-//! to the channel), b noise of low frequency with its corner. Only what has one of these shapes is noise. Fitted by
+//! to the channel), n the pick-off's noise as the servo answers it ([`super::shapes`]), b noise of low frequency with its corner. Only what has one of these shapes is noise. Fitted by
 //! Whittle's likelihood to medians over segments, so that what happens now and then is no noise either. Where the
 //! bearing turns around at once, [`Slips`] whitens the noise of the logged rate; where it does so slowly, that noise
 //! comes through the slope of the friction law: `P + s^2 W(f) |G(f)|^2`, s the torque that the rate's noise makes, W
 //! Wiener's filter: of noise and motion it leaves that much to be off.
 
-use realfft::num_complex::Complex;
-
 use super::plans::Plans;
+use super::shapes::{Impulse, Shapes};
 use super::slip::Slips;
-use crate::record::{RateNoise, between};
+use crate::record::{RateNoise, Signal};
 
 /// Rows of a segment.
 const SEGMENT: usize = 4096;
@@ -34,6 +33,8 @@ pub struct Noise {
     pub white: f64,
     /// l.
     pub inputs: f64,
+    /// n.
+    pub in_loop: f64,
     /// b.
     pub low: f64,
     /// `f_c` [Hz].
@@ -58,9 +59,11 @@ pub struct Whitener {
 
 /// Where the noise of inputs acts.
 #[derive(Debug, Clone, Copy)]
-pub struct Loop<'a> {
-    /// Each channel after an impulse of torque.
-    pub impulse: &'a [Vec<f64>],
+pub(crate) struct Loop<'a> {
+    /// After an impulse of torque.
+    pub impulse: &'a Impulse,
+    /// What the channels are.
+    pub signals: &'a [Signal],
     /// Rows at which the bearing may turn around, and those just after.
     pub turning: &'a [bool],
     /// s of the rate's noise as logged, in units of the impulse; zero where it is whitened turn by turn.
@@ -74,7 +77,7 @@ pub struct Loop<'a> {
 impl Whitener {
     /// Fits the filter to a residual, channel by channel.
     #[must_use]
-    pub fn new(residual: &[Vec<f64>], valid: &[bool], behind: Loop) -> Self {
+    pub(crate) fn new(residual: &[Vec<f64>], valid: &[bool], behind: Loop) -> Self {
         let rows = valid.len();
         let plans = Plans::new(rows + SEGMENT.min(rows));
         let step_hz = 1.0 / (plans.length() as f64 * behind.period_s);
@@ -83,26 +86,25 @@ impl Whitener {
         let slow = behind.turning_noise > 0.0;
         let mut noise = Vec::new();
         let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
-        for (channel, impulse) in residual.iter().zip(behind.impulse) {
-            let response: Vec<f64> = plans.lines(impulse.iter().copied()).iter().map(Complex::norm_sqr).collect();
-            let shape = |hz: f64| between(&response, hz / step_hz);
+        let shapes = Shapes::of(behind.impulse, behind.signals, &plans, behind.period_s);
+        for (channel, shapes) in residual.iter().zip(&shapes) {
             // where hardly anything else is, the rows that turn around show their noise themselves
             let aside = Some(Bands::new(channel, &quiet, Of::Most, behind.period_s));
             let aside = aside.filter(|bands| enough(&quiet) && bands.any());
             let most = if aside.is_some() { behind.turning_noise.powi(2) } else { 0.0 };
-            let own = aside.unwrap_or_else(|| Bands::new(channel, valid, Of::Most, behind.period_s)).fit(&shape);
-            let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s) * shape(hz);
+            let own = aside.unwrap_or_else(|| Bands::new(channel, valid, Of::Most, behind.period_s)).fit(shapes);
+            let passed = |hz: f64| behind.rate_noise.pass(2.0 * hz * behind.period_s) * shapes.at(hz)[0];
             // at most what the slope makes of it: the gimbal follows the bearing and takes a part away
             let turning_power = if most > 0.0 {
                 let turns = Bands::new(channel, &turns, Of::All, behind.period_s);
-                turns.fit_more(&|hz| own.power(hz, shape(hz)), &passed, most)
+                turns.fit_more(&|hz| own.power(hz, shapes.at(hz)), &passed, most)
             } else {
                 0.0
             };
             let gain = |more: f64| -> Vec<f64> {
                 let of = |line: usize| {
                     let hz = line as f64 * step_hz;
-                    own.power(hz, response[line]) + more * passed(hz)
+                    own.power(hz, shapes.line(line)) + more * passed(hz)
                 };
                 (0..=plans.length() / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect()
             };
@@ -118,18 +120,17 @@ impl Whitener {
     pub(crate) fn measured_again(mut self, residual: &[Vec<f64>], behind: Loop) -> Self {
         let (channels, whitened) = (residual.len(), self.apply(residual));
         let step_hz = 1.0 / (self.plans.length() as f64 * behind.period_s);
-        for (channel, impulse) in behind.impulse.iter().enumerate() {
-            let response: Vec<f64> = self.plans.lines(impulse.iter().copied()).iter().map(Complex::norm_sqr).collect();
-            let shape = |hz: f64| between(&response, hz / step_hz);
+        let shapes = Shapes::of(behind.impulse, behind.signals, &self.plans, behind.period_s);
+        for (channel, shapes) in shapes.iter().enumerate() {
             let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
             let mut bands = Bands::new(&series, &self.valid, Of::Most, behind.period_s);
             for (power, &hz) in bands.power.iter_mut().zip(&bands.hz) {
-                *power *= self.noise[channel].power(hz, shape(hz));
+                *power *= self.noise[channel].power(hz, shapes.at(hz));
             }
-            let own = bands.fit(&shape);
-            let of = |(line, response): (usize, &f64)| own.power(line as f64 * step_hz, *response);
+            let own = bands.fit(shapes);
+            let of = |line: usize| own.power(line as f64 * step_hz, shapes.line(line));
             self.gains[channel] =
-                response.iter().enumerate().map(of).map(|power| 1.0 / power.max(LEAST_POWER).sqrt()).collect();
+                (0..=self.plans.length() / 2).map(of).map(|power| 1.0 / power.max(LEAST_POWER).sqrt()).collect();
             self.noise[channel] = own;
         }
         self
@@ -200,8 +201,8 @@ impl Whitener {
 }
 
 impl Noise {
-    fn power(&self, hz: f64, response: f64) -> f64 {
-        self.white + self.inputs * response + self.low * low(hz, self.corner_hz)
+    fn power(&self, hz: f64, [inputs, in_loop]: [f64; 2]) -> f64 {
+        self.white + self.inputs * inputs + self.in_loop * in_loop + self.low * low(hz, self.corner_hz)
     }
 }
 
@@ -290,30 +291,34 @@ impl Bands {
     }
 
     /// The shapes that make the measured powers most likely.
-    fn fit(&self, response: &dyn Fn(f64) -> f64) -> Noise {
-        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, low: 0.0, corner_hz: 1.0 });
+    fn fit(&self, shapes: &Shapes) -> Noise {
+        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0 });
         if !self.any() {
             return best.1;
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
-        let peak = self.hz.iter().map(|hz| response(*hz)).fold(1e-300, f64::max);
+        let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
+        let peaks = [peak(0), peak(1)];
         for corner_hz in CORNERS_HZ {
-            let bases: Vec<[f64; 3]> =
-                self.hz.iter().map(|&hz| [1.0, response(hz) / peak, low(hz, corner_hz)]).collect();
-            let mut share = [mean, 0.1 * mean, 0.1 * mean];
-            let power = |share: &[f64; 3], basis: &[f64; 3]| -> f64 {
+            let basis = |&hz: &f64| {
+                let [inputs, in_loop] = shapes.at(hz);
+                [1.0, inputs / peaks[0], in_loop / peaks[1], low(hz, corner_hz)]
+            };
+            let bases: Vec<[f64; 4]> = self.hz.iter().map(basis).collect();
+            let mut share = [mean, 0.1 * mean, 0.1 * mean, 0.1 * mean];
+            let power = |share: &[f64; 4], basis: &[f64; 4]| -> f64 {
                 share.iter().zip(basis).map(|(a, b)| a * b).sum::<f64>().max(1e-300)
             };
             for _ in 0..STEPS {
-                let (mut up, mut down) = ([0.0; 3], [0.0; 3]);
+                let (mut up, mut down) = ([0.0; 4], [0.0; 4]);
                 for ((basis, measured), weight) in bases.iter().zip(&self.power).zip(&self.weight) {
                     let model = power(&share, basis);
-                    for part in 0..3 {
+                    for part in 0..4 {
                         up[part] += weight * basis[part] * measured / (model * model);
                         down[part] += weight * basis[part] / model;
                     }
                 }
-                for part in 0..3 {
+                for part in 0..4 {
                     share[part] *= up[part] / down[part].max(1e-300);
                 }
             }
@@ -327,8 +332,9 @@ impl Bands {
                 })
                 .sum();
             if unlikely < best.0 {
-                let [white, inputs, low] = share;
-                best = (unlikely, Noise { white, inputs: inputs / peak, low, corner_hz });
+                let [white, inputs, in_loop, low] = share;
+                best =
+                    (unlikely, Noise { white, inputs: inputs / peaks[0], in_loop: in_loop / peaks[1], low, corner_hz });
             }
         }
         best.1

@@ -8,7 +8,7 @@ use crate::fit::{Fit, Problem, Search};
 
 /// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
 const COST: f64 = 18.0;
-const COST_OF_SHIFT: f64 = 11.0;
+const COST_OF_SHIFT: f64 = 15.0;
 /// What it takes more where the bearing turns around slowly: there the friction makes one of them of the noise of the
 /// rate [nats].
 const OFFSETS: [&str; 3] = ["float_torque", "g_sensitive_float_torque", "direction_asymmetry"];
