@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::gross::gross;
+use super::hypothesis::{Hypothesis, Point};
 use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::refine::Effort;
@@ -296,9 +297,35 @@ fn best_by_effect(problem: &Problem, mut order: Vec<Extension>, count: usize) ->
 }
 
 fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
-    let mut set = from.set.clone();
-    set.0.push(extension.index);
-    let mut values = from.values.clone();
-    values.push(problem.candidates[extension.index].values(&extension.amplitudes));
+    let candidate = &problem.candidates[extension.index];
+    let (index, values) = if candidate.effect == "presliding" {
+        // a chord misleads: its settings are tried as they are
+        settings(problem, from, candidate.effect)
+    } else {
+        (extension.index, candidate.values(&extension.amplitudes))
+    };
+    let (set, values) = extended(from, index, values);
     refine(problem, &set, &values, Some(from), Effort::Quick)
+}
+
+/// The setting of an effect's candidates that leaves least beside a fit.
+fn settings(problem: &Problem, from: &Fit, effect: &str) -> (usize, Vec<f64>) {
+    let mut all: Vec<(f64, usize, Vec<f64>)> = Vec::new();
+    for (index, candidate) in problem.candidates.iter().enumerate().filter(|(_, own)| own.effect == effect) {
+        let own = candidate.probes[0].0.clone();
+        let (set, values) = extended(from, index, own.clone());
+        let square = Hypothesis::new(problem, &set, &values)
+            .evaluate(&Point { values: values.clone(), ..from.point(problem) })
+            .square;
+        all.push((square, index, own));
+    }
+    let (_, index, own) = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+    (index, own)
+}
+
+fn extended(from: &Fit, index: usize, own: Vec<f64>) -> (Set, Vec<Vec<f64>>) {
+    let (mut set, mut values) = (from.set.clone(), from.values.clone());
+    set.0.push(index);
+    values.push(own);
+    (set, values)
 }

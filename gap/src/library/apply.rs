@@ -10,7 +10,11 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
         "friction_level" => physics.friction.load_factor *= 1.0 + v(0),
         "viscous_friction" => physics.friction.viscous_nm_s += v(0),
         "stribeck" => physics.friction.stribeck = Some([v(0), v(1)]),
-        "presliding" => physics.friction.presliding_rad = v(0),
+        "presliding" => {
+            physics.friction.presliding_rad = v(0);
+            // a second value says how it is formulated
+            physics.friction.presliding_settles = v(1) > 0.5;
+        }
         "load_dependence" => physics.friction.per_g += v(0),
         "direction_asymmetry" => physics.friction.asymmetry += v(0),
         "quadratic_drag" => physics.friction.quadratic_nm_s2 += v(0),

@@ -64,7 +64,12 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "friction_drift" => grid(effect, &[0.12, 0.4, 1.3].map(|share| vec![0.1, share * seconds])),
         "cable_hysteresis" => grid(effect, &[0.0015, 0.005, 0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])),
         "flexible_mode" => grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, 0.03])),
-        "presliding" => secants(effect, &[3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along])),
+        "presliding" => {
+            // in the place of the clamp, and on it
+            let mut settings = [3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along]).to_vec();
+            settings.extend([2e-6, 1e-5, 5e-5, 3e-4].map(|along| vec![along, 1.0]));
+            secants(effect, &settings)
+        }
         "loop_delay" => secants(effect, &[3e-5, 2e-4].map(|delay_s| vec![delay_s])),
         "dead_zone" => secants(effect, &[3e-5, 1.2e-4, 5e-4].map(|width| vec![width])),
         "torque_saturation" => {

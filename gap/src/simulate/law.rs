@@ -162,23 +162,26 @@ impl<'a, const L: usize> Law<'a, L> {
         crosses.then_some(friction_before + (1.0 - share) * (friction - friction_before))
     }
 
-    /// Dahl's build-up of one lane over the displacement of a step: the share built up.
+    /// Dahl's build-up of one lane over the displacement of a step: the share built up, of all in place of the clamp or of
+    /// what the clamp gives at the rate.
     pub(super) fn build_up(&self, lane: usize, from: [f64; 2], [rate, brake, level, step_s]: [f64; 4]) -> f64 {
         let [before, zeta_before] = from;
-        let along = self.physics[lane].friction.presliding_rad;
+        let friction = &self.physics[lane].friction;
+        let (along, slip) = (friction.presliding_rad, self.slip_radps[lane]);
+        let full = |w: f64| if friction.presliding_settles { (w / slip).clamp(-1.0, 1.0) } else { side(w) };
         let mut zeta = zeta_before;
         for _ in 0..3 {
             let w = rate - brake * level * zeta;
             let leg = |zeta: f64, w: f64, moved: f64| {
-                let side = side(w);
-                side + (zeta - side) * (-moved.abs() / along).exp()
+                let full = full(w);
+                full + (zeta - full) * (-moved.abs() / along).exp()
             };
             zeta = if w * before < 0.0 {
                 let share = before / (before - w);
-                let turned = leg(zeta_before, before, 0.5 * before * share * step_s);
-                leg(turned, w, 0.5 * w * (1.0 - share) * step_s)
+                let turned = leg(zeta_before, 0.5 * before, 0.5 * before * share * step_s);
+                leg(turned, 0.5 * w, 0.5 * w * (1.0 - share) * step_s)
             } else {
-                leg(zeta_before, before + w, 0.5 * (before + w) * step_s)
+                leg(zeta_before, 0.5 * (before + w), 0.5 * (before + w) * step_s)
             };
         }
         zeta

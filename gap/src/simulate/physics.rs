@@ -60,6 +60,8 @@ pub struct Friction {
     pub stribeck: Option<[f64; 2]>,
     /// Displacement over which friction builds up [rad].
     pub presliding_rad: f64,
+    /// Whether it settles on the nominal clamp, and not in its place.
+    pub presliding_settles: bool,
     /// Ratio and time constant [s].
     pub drift: Option<[f64; 2]>,
 }
@@ -110,6 +112,7 @@ impl Default for Friction {
             quadratic_nm_s2: 0.0,
             stribeck: None,
             presliding_rad: 0.0,
+            presliding_settles: false,
             drift: None,
         }
     }
