@@ -1,4 +1,5 @@
-//! What the axis of the cases with effects does beside its nominal equations. The build script reads this file, too.
+//! What the axis of the cases with effects does beside its nominal equations. The build script and the host's
+//! digests read this file, too.
 
 use gimbal_servo::effects::Config as Effects;
 

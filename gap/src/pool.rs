@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use crate::diagnose::Diagnosis;
 use crate::fit::raw_residual;
-use crate::judge::{Verdict, Yardstick, in_step};
+use crate::judge::{Verdict, Yardstick, holds, in_step};
 use crate::library::{nuisances, platform, releases};
 use crate::place::erfc;
 use crate::simulate::{Physics, predict};
@@ -136,7 +136,7 @@ fn sets(diagnoses: &[Diagnosis], logs: &[usize]) -> (Vec<PooledSet>, f64) {
 fn verdict(diagnoses: &[Diagnosis], logs: &[usize], sets: &[PooledSet], unknown: f64) -> Verdict {
     let Some(best) = sets.first() else { return Verdict::CannotTell };
     // a set that holds the best one and more is no rival
-    let rival = |set: &&PooledSet| best.effects.is_empty() || !best.effects.iter().all(|own| set.effects.contains(own));
+    let rival = |set: &&PooledSet| best.effects.is_empty() || !holds(&set.effects, &best.effects);
     let second = sets.iter().skip(1).find(rival).map_or(0.0, |set| set.probability);
     let is = |verdict| logs.iter().any(|&log| diagnoses[log].verdict() == verdict);
     if unknown > best.probability {

@@ -11,6 +11,13 @@ use crate::axis::{Axis, System, si};
 use crate::inputs::{at_period, bare, friction_profile, held, torque_jumps, torque_step, torques, unbalance_profile};
 use crate::random::Random;
 
+// the boards' cases have the same
+#[allow(unreachable_pub, reason = "a module of the firmware")]
+#[path = "../../firmware/src/effects.rs"]
+mod sizes;
+
+pub use sizes::all as all_effects;
+
 /// One frozen run.
 #[derive(Debug, Clone)]
 pub struct Case {
@@ -29,8 +36,6 @@ pub struct Case {
 pub fn cases() -> Vec<Case> {
     let case = |name, config, rows| Case { name, config, effects: None, rows };
     let corrected = |name, effects, rows| Case { name, config: Config::consistent(), effects: Some(effects), rows };
-    let three =
-        Effects { cable_spring_nm_per_rad: 1.2e-3, loop_delay_s: 4e-4, torque_bias_nm: 2e-4, ..Effects::default() };
     let consistent = Config::consistent();
     let mut coupled = consistent;
     coupled.gyro.cross_coupling = true;
@@ -44,28 +49,9 @@ pub fn cases() -> Vec<Case> {
         case("noise-as-printed-4ms", at_period(Config::as_printed(), 4e-3), noise(5_000, 4)),
         case("noise-250us", at_period(consistent, 0.25e-3), noise(5_000, 5)),
         corrected("noise-all-effects", all_effects(), noise(5_000, 2)),
-        corrected("noise-three-effects", three, noise(5_000, 2)),
+        corrected("noise-three-effects", sizes::three(), noise(5_000, 2)),
         corrected("stop-to-stop-all-effects", all_effects(), torques(&torque_jumps(0.04, 10_000, 1e-3, 1))),
     ]
-}
-
-/// Every size that the law with effects has.
-#[must_use]
-pub fn all_effects() -> Effects {
-    Effects {
-        constant_torque_nm: 3e-4,
-        cable_spring_nm_per_rad: 1.2e-3,
-        viscous_friction_nm_s_per_rad: 5e-4,
-        quadratic_drag_nm_s2_per_rad2: 3e-4,
-        anisoelasticity_nm_s4_per_m2: 1e-6,
-        stribeck_excess_nm: 6e-4,
-        stribeck_rate_radps: 0.05,
-        loop_delay_s: 4e-4,
-        torque_scale: 0.02,
-        torque_bias_nm: 2e-4,
-        pickoff_scale: 0.01,
-        pickoff_bias_rad: 1e-4,
-    }
 }
 
 /// Every input a random walk of its own.

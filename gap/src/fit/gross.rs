@@ -14,11 +14,12 @@ const CHANGES: [f64; 6] = [-0.75, -0.5, -0.25, 0.3, 0.6, 1.0];
 /// Parameters that are fitted from their best change.
 const FITTED: usize = 3;
 
-/// A parameter at one of its values.
+/// A parameter at its best change.
 struct Start {
     candidate: usize,
+    place: usize,
+    shift: f64,
     square: f64,
-    from: Fit,
 }
 
 /// Fits of single nominal parameters that start far from nominal.
@@ -27,29 +28,31 @@ pub(crate) fn gross(problem: &Problem, null: &Fit) -> Vec<Fit> {
         return Vec::new();
     }
     let mut starts: Vec<Start> =
-        (0..problem.candidates.len()).into_par_iter().filter_map(|candidate| best(problem, null, candidate)).collect();
+        (0..problem.candidates.len()).into_par_iter().filter_map(|candidate| best(problem, candidate)).collect();
     starts.sort_by(|a, b| a.square.total_cmp(&b.square));
     starts.truncate(FITTED);
     let fit = |start: &Start| {
-        let values = vec![vec![0.0; problem.candidates[start.candidate].releases.len()]];
-        refine(problem, &Set(vec![start.candidate]), &values, Some(&start.from), Effort::Thorough)
+        let mut from = null.clone();
+        from.begin = problem.begin.clone();
+        from.shifts.fill(0.0);
+        from.shifts[start.place] = start.shift;
+        refine(problem, &Set(vec![start.candidate]), &[vec![0.0]], Some(&from), Effort::Thorough)
     };
     starts.par_iter().map(fit).filter(|fit| fit.square < null.square).collect()
 }
 
 /// The change of a candidate's parameter that leaves least, all else nominal.
-fn best(problem: &Problem, null: &Fit, candidate: usize) -> Option<Start> {
+fn best(problem: &Problem, candidate: usize) -> Option<Start> {
     let [release] = problem.candidates[candidate].releases else { return None };
     let place = problem.nuisances.iter().position(|own| own.name == *release && !own.absolute)?;
     let set = Set(vec![candidate]);
-    let hypothesis = Hypothesis::new(problem, &set, &[vec![0.0]]);
+    let values = vec![vec![0.0]];
+    let hypothesis = Hypothesis::new(problem, &set, &values);
     let start = |change: f64| {
-        let mut from = null.clone();
-        from.begin = problem.begin.clone();
-        from.shifts.fill(0.0);
-        from.shifts[place] = change.ln_1p();
-        let point = Point { values: vec![vec![0.0]], ..from.point(problem) };
-        Start { candidate, square: hypothesis.evaluate(&point).square, from }
+        let shift = change.ln_1p();
+        let mut point = Point::nominal(problem, values.clone());
+        point.shifts[place] = shift;
+        Start { candidate, place, shift, square: hypothesis.evaluate(&point).square }
     };
     CHANGES.map(start).into_iter().filter(|start| start.square.is_finite()).min_by(|a, b| a.square.total_cmp(&b.square))
 }

@@ -7,10 +7,11 @@ use gimbal_model_file::ModelFile;
 
 use super::draft::Draft;
 use super::path::Path;
+use super::plans::Plans;
 use super::resonance;
 use super::rest::{Raw, rest};
 use super::ripple;
-use super::shapes::Impulse;
+use super::shapes::{Impulse, Shapes};
 use super::signals::{Kept, Signals, peak, residual, scaled, valid};
 use super::slip::{Slips, Turned, Turning};
 use super::turning::{at_once, impulse, remembered, turning_noise, turns};
@@ -34,14 +35,16 @@ pub(crate) struct Ground<'a> {
     /// All but those whose lines show in what is left.
     candidates: Vec<Candidate>,
     not_looked_for: Vec<&'static str>,
-    offer: Offer<'static>,
+    offer: Offer,
     columns: Columns,
     sigma: Vec<f64>,
     /// Sensitivities and nominal residual over the noise.
     raw: Vec<Kept>,
     target: Signals,
-    /// After an impulse of torque.
+    /// After an impulse of torque, and what noise looks like behind the loop.
     impulse: Impulse,
+    plans: Plans,
+    shapes: Vec<Shapes>,
     valid: Vec<bool>,
     /// Rows at which the bearing turns around, and what the noise of the rate does there.
     turns: Vec<bool>,
@@ -71,11 +74,16 @@ impl<'a> Ground<'a> {
         candidates.retain(|candidate| !not_looked_for.contains(&candidate.effect));
         let draft = Draft { record, base: &base, begin: &begin, nominal: &nominal, over_noise: &over_noise };
         let (columns, raw, sigma) = draft.columns(&nuisances, &candidates);
+        let impulse = impulse(&base, record, &over_noise);
+        let signals: Vec<Signal> = record.channels.iter().map(|channel| channel.signal).collect();
+        let plans = Whitener::plans_of(record.rows());
         Self {
             record,
             stop_rad: model.config.gyro.stop_angle_rad,
             target: scaled(target, &over_noise),
-            impulse: impulse(&base, record, &over_noise),
+            shapes: Shapes::of(&impulse, &signals, &plans, record.inputs.period_s),
+            impulse,
+            plans,
             valid: valid(record),
             turns: turns(&base, record, &nominal),
             base,
@@ -156,8 +164,8 @@ impl<'a> Ground<'a> {
         let turning_noise = if turns_at_once { 0.0 } else { turning_noise(base, record, nominal, turns) };
         let (period_s, rate_noise) = (record.inputs.period_s, &record.rate_noise);
         let turning = &remembered(turns);
-        let signals: Vec<Signal> = record.channels.iter().map(|channel| channel.signal).collect();
-        let behind = Loop { impulse: &self.impulse, signals: &signals, turning, turning_noise, rate_noise, period_s };
+        let (plans, shapes) = (&self.plans, &self.shapes);
+        let behind = Loop { plans, shapes, turning, turning_noise, rate_noise, period_s };
         let whitener = Whitener::new(rest, &self.valid, behind);
         if !turns_at_once {
             return whitener;
@@ -179,22 +187,19 @@ impl<'a> Ground<'a> {
         let drive = path.drive(whitener, &whitener.apply(rest));
         let cycles = ripple::cycles(path, &drive, &inputs.rel_rad(&self.nominal), &self.valid, period_s);
         let modes_hz = resonance::frequencies(path, whitener, &drive, &self.nominal.gimbal_rate_radps, period_s);
-        let offer = Offer { cycles: &cycles, modes_hz: &modes_hz, ..self.offer };
-        let mut narrow = narrow(&offer);
+        let mut narrow = narrow(&cycles, &modes_hz);
         narrow.retain(|candidate| !self.not_looked_for.contains(&candidate.effect));
         narrow
     }
 }
 
 /// What the log offers to the effects.
-fn offer(record: &Record, nominal: &Prediction) -> Offer<'static> {
+fn offer(record: &Record, nominal: &Prediction) -> Offer {
     let sees = |signal| record.channel(signal).is_some();
     Offer {
         peak_torque_nm: record
             .channel(Signal::MotorTorque)
             .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| high(&channel.values)),
-        cycles: &[],
-        modes_hz: &[],
         sees_torque: sees(Signal::MotorTorque),
         sees_cross: !record.inputs.cross_radps.is_empty(),
     }

@@ -24,6 +24,13 @@ pub(crate) struct Point {
     pub(crate) state: Vec<f64>,
 }
 
+impl Point {
+    /// Effects of some values on the nominal platform, begun where the log seems to begin.
+    pub(crate) fn nominal(problem: &Problem, values: Vec<Vec<f64>>) -> Self {
+        Self { values, shifts: vec![0.0; problem.nuisances.len()], state: vec![0.0; problem.columns.begin] }
+    }
+}
+
 /// What a try predicts.
 #[derive(Debug)]
 pub(crate) struct Outcome {

@@ -32,5 +32,5 @@ pub use refine::{Effort, Fit, refine};
 pub use refit::{refit, without};
 pub use search::{Glimpse, Search, Set, search};
 pub(crate) use search::{null, search_from};
-pub(crate) use signals::{predicted, residual as raw_residual};
+pub(crate) use signals::{of_channel, predicted, residual as raw_residual};
 pub use whiten::Whitener;

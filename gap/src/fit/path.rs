@@ -9,7 +9,7 @@
 
 use realfft::num_complex::Complex;
 
-use super::signals::Signals;
+use super::signals::{Signals, of_channel};
 use super::whiten::Whitener;
 
 /// The way.
@@ -63,7 +63,7 @@ impl Path {
         let channels = self.lines.len();
         let mut drive = vec![0.0; self.rows];
         for (channel, lines) in self.lines.iter().enumerate() {
-            let series = whitened.iter().skip(channel).step_by(channels).copied();
+            let series = of_channel(whitened, channel, channels);
             let mut product: Vec<Complex<f64>> =
                 plans.lines(series).iter().zip(lines).map(|(a, b)| a * b.conj() / plans.length() as f64).collect();
             let back = plans.series(&mut product);

@@ -8,7 +8,7 @@ use super::ground::Ground;
 use super::normal::{gram, narrow, products, slices};
 use super::path::Path;
 use super::pull::Pull;
-use super::signals::{Kept, Signals, scaled};
+use super::signals::{Kept, Signals, of_channel, scaled};
 use super::{Fit, Whitener};
 use crate::library::{Candidate, Nuisance};
 use crate::record::{Record, rough};
@@ -104,7 +104,7 @@ impl<'a> Problem<'a> {
     fn roughness(&self, whitened: &[f64]) -> f64 {
         let channels = self.record.channels.len();
         let of = |channel: usize| -> f64 {
-            let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
+            let series: Vec<f64> = of_channel(whitened, channel, channels).collect();
             rough(&series, &self.whitener.valid).powi(2)
         };
         (0..channels).map(of).sum::<f64>() / channels as f64

@@ -104,14 +104,7 @@ pub(crate) fn linearised(problem: &Problem, square: f64) -> f64 {
 #[must_use]
 pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fit>, effort: Effort) -> Fit {
     let hypothesis = Hypothesis::new(problem, set, start);
-    let mut point = from.map_or_else(
-        || Point {
-            values: Vec::new(),
-            shifts: vec![0.0; problem.nuisances.len()],
-            state: vec![0.0; problem.columns.begin],
-        },
-        |fit| fit.point(problem),
-    );
+    let mut point = from.map_or_else(|| Point::nominal(problem, Vec::new()), |fit| fit.point(problem));
     point.values = start.to_vec();
     let outcome = hypothesis.evaluate(&point);
     let mut walk = Walk {

@@ -11,13 +11,12 @@ use realfft::num_complex::Complex;
 
 use super::path::Path;
 use super::whiten::Whitener;
+use crate::library::MODE_DAMPING;
 
 /// Range of frequencies, and the step from one to the next.
 const FROM_HZ: f64 = 11.0;
 const TO_HZ: f64 = 400.0;
 const STEP: f64 = 1.03;
-/// Damping that is looked for.
-const DAMPING: f64 = 0.03;
 /// Frequencies that are offered, and their least distance as a factor.
 const OFFERED: usize = 2;
 const APART: f64 = 1.2;
@@ -39,7 +38,7 @@ pub(crate) fn frequencies(
         let (mut product, mut energy) = (0.0, 0.0);
         for (line, ((acceleration, drive), seen)) in acceleration.iter().zip(&drive).zip(seen.lines()).enumerate() {
             let x = line as f64 * step_hz / hz;
-            let torque = x * x / Complex::new(1.0 - x * x, 2.0 * DAMPING * x) * acceleration;
+            let torque = x * x / Complex::new(1.0 - x * x, 2.0 * MODE_DAMPING * x) * acceleration;
             product += (torque.conj() * drive).re;
             energy += torque.norm_sqr() * seen;
         }

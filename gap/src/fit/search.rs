@@ -10,6 +10,7 @@ use super::refine::Effort;
 use super::refit::rebase;
 use super::signals::peak;
 use super::{Fit, Problem, refine};
+use crate::library::Candidate;
 
 /// A set of candidates, by index.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -298,31 +299,26 @@ fn best_by_effect(problem: &Problem, mut order: Vec<Extension>, count: usize) ->
 
 fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
     let candidate = &problem.candidates[extension.index];
-    let (index, values) = if candidate.effect == "presliding" {
-        // a chord misleads: its settings are tried as they are
-        settings(problem, from, candidate.effect)
-    } else {
-        (extension.index, candidate.values(&extension.amplitudes))
-    };
-    let (set, values) = extended(from, index, values);
+    // a chord of pre-sliding misleads: its settings are tried as they are
+    let as_it_is = if candidate.effect == "presliding" { setting(problem, from, candidate.effect) } else { None };
+    let (index, own) = as_it_is.unwrap_or_else(|| (extension.index, candidate.values(&extension.amplitudes)));
+    let (set, values) = extended(from, index, own);
     refine(problem, &set, &values, Some(from), Effort::Quick)
 }
 
 /// The setting of an effect's candidates that leaves least beside a fit.
-fn settings(problem: &Problem, from: &Fit, effect: &str) -> (usize, Vec<f64>) {
-    let mut all: Vec<(f64, usize, Vec<f64>)> = Vec::new();
-    for (index, candidate) in problem.candidates.iter().enumerate().filter(|(_, own)| own.effect == effect) {
+fn setting(problem: &Problem, from: &Fit, effect: &str) -> Option<(usize, Vec<f64>)> {
+    let tried = |(index, candidate): (usize, &Candidate)| {
         let own = candidate.probes[0].0.clone();
         let (set, values) = extended(from, index, own.clone());
-        let square = Hypothesis::new(problem, &set, &values)
-            .evaluate(&Point { values: values.clone(), ..from.point(problem) })
-            .square;
-        all.push((square, index, own));
-    }
-    let (_, index, own) = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
-    (index, own)
+        let point = Point { values, ..from.point(problem) };
+        (Hypothesis::new(problem, &set, &point.values).evaluate(&point).square, (index, own))
+    };
+    let all = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
+    all.map(tried).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, best)| best)
 }
 
+/// A fit's set and values with one candidate more.
 fn extended(from: &Fit, index: usize, own: Vec<f64>) -> (Set, Vec<Vec<f64>>) {
     let (mut set, mut values) = (from.set.clone(), from.values.clone());
     set.0.push(index);

@@ -29,7 +29,8 @@ pub(crate) struct Impulse {
 }
 
 /// Powers at the lines of a transform.
-pub(super) struct Shapes {
+#[derive(Debug)]
+pub(crate) struct Shapes {
     /// Of the logged inputs' noise.
     inputs: Vec<f64>,
     /// Of the pick-off's in the loop.

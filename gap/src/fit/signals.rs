@@ -63,6 +63,11 @@ pub(crate) fn scaled(mut signals: Signals, by: &[f64]) -> Signals {
     signals
 }
 
+/// One channel of what stands row after row.
+pub(crate) fn of_channel(rows: &[f64], channel: usize, channels: usize) -> impl Iterator<Item = f64> + '_ {
+    rows.iter().skip(channel).step_by(channels).copied()
+}
+
 /// Rows at which every channel counts.
 pub(crate) fn valid(record: &Record) -> Vec<bool> {
     (0..record.rows()).map(|k| record.channels.iter().all(|channel| channel.valid[k])).collect()

@@ -12,9 +12,10 @@
 //! Wiener's filter: of noise and motion it leaves that much to be off.
 
 use super::plans::Plans;
-use super::shapes::{Impulse, Shapes};
+use super::shapes::Shapes;
+use super::signals::of_channel;
 use super::slip::Slips;
-use crate::record::{RateNoise, Signal};
+use crate::record::RateNoise;
 
 /// Rows of a segment.
 const SEGMENT: usize = 4096;
@@ -60,10 +61,10 @@ pub struct Whitener {
 /// Where the noise of inputs acts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Loop<'a> {
-    /// After an impulse of torque.
-    pub impulse: &'a Impulse,
-    /// What the channels are.
-    pub signals: &'a [Signal],
+    /// Transforms of the record's rows ([`Whitener::plans_of`]).
+    pub(super) plans: &'a Plans,
+    /// What noise looks like in each channel.
+    pub shapes: &'a [Shapes],
     /// Rows at which the bearing may turn around, and those just after.
     pub turning: &'a [bool],
     /// s of the rate's noise as logged, in units of the impulse; zero where it is whitened turn by turn.
@@ -75,19 +76,22 @@ pub(crate) struct Loop<'a> {
 }
 
 impl Whitener {
+    /// Transforms with room for what a filter remembers.
+    pub(super) fn plans_of(rows: usize) -> Plans {
+        Plans::new(rows + SEGMENT.min(rows))
+    }
+
     /// Fits the filter to a residual, channel by channel.
     #[must_use]
     pub(crate) fn new(residual: &[Vec<f64>], valid: &[bool], behind: Loop) -> Self {
-        let rows = valid.len();
-        let plans = Plans::new(rows + SEGMENT.min(rows));
+        let plans = behind.plans;
         let step_hz = 1.0 / (plans.length() as f64 * behind.period_s);
         let quiet: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && !turning).collect();
         let turns: Vec<bool> = valid.iter().zip(behind.turning).map(|(valid, turning)| *valid && *turning).collect();
         let slow = behind.turning_noise > 0.0;
         let mut noise = Vec::new();
         let (mut gains, mut turning_gains) = (Vec::new(), Vec::new());
-        let shapes = Shapes::of(behind.impulse, behind.signals, &plans, behind.period_s);
-        for (channel, shapes) in residual.iter().zip(&shapes) {
+        for (channel, shapes) in residual.iter().zip(behind.shapes) {
             // where hardly anything else is, the rows that turn around show their noise themselves
             let aside = Some(Bands::new(channel, &quiet, Of::Most, behind.period_s));
             let aside = aside.filter(|bands| enough(&quiet) && bands.any());
@@ -113,16 +117,23 @@ impl Whitener {
             noise.push(own);
         }
         let turning = behind.turning.iter().map(|turning| slow && *turning).collect();
-        Self { noise, valid: valid.to_vec(), gains, turning_gains, turning, slips: Slips::default(), plans }
+        Self {
+            noise,
+            valid: valid.to_vec(),
+            gains,
+            turning_gains,
+            turning,
+            slips: Slips::default(),
+            plans: plans.clone(),
+        }
     }
 
     /// The same with the filter fitted to what this one makes white.
     pub(crate) fn measured_again(mut self, residual: &[Vec<f64>], behind: Loop) -> Self {
         let (channels, whitened) = (residual.len(), self.apply(residual));
         let step_hz = 1.0 / (self.plans.length() as f64 * behind.period_s);
-        let shapes = Shapes::of(behind.impulse, behind.signals, &self.plans, behind.period_s);
-        for (channel, shapes) in shapes.iter().enumerate() {
-            let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
+        for (channel, shapes) in behind.shapes.iter().enumerate() {
+            let series: Vec<f64> = of_channel(&whitened, channel, channels).collect();
             let mut bands = Bands::new(&series, &self.valid, Of::Most, behind.period_s);
             for (power, &hz) in bands.power.iter_mut().zip(&bands.hz) {
                 *power *= self.noise[channel].power(hz, shapes.at(hz));

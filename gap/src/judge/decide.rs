@@ -6,7 +6,7 @@ use gimbal_plant::Effect;
 use super::comb;
 use super::left_over::left_over;
 use super::strange::{Stranger, strangers};
-use super::weigh::{BEYOND, Weighed, weigh};
+use super::weigh::{BEYOND, Weighed, holds, is_part, weigh};
 use crate::fit::{Fit, Problem, Search};
 use crate::record::Signal;
 
@@ -132,11 +132,11 @@ impl Decision {
         self.strangers.first().filter(|stranger| stranger.nats() > self.strange_limit)
     }
 
-    /// Sets that are not told apart from one: a tenth as probable, and more than it with something added.
+    /// Sets that are not told apart from one: nearly as probable, and more than it with something added.
     fn rivals(&self, own: &[&str]) -> Vec<SetProbability> {
         let probability = self.ranking.iter().find(|set| set.effects == own).map_or(0.0, |set| set.probability);
         let rival = |set: &&SetProbability| {
-            !set.effects.is_empty() && !contains(&set.effects, own) && set.probability > RIVAL * probability
+            !set.effects.is_empty() && !holds(&set.effects, own) && set.probability > RIVAL * probability
         };
         self.ranking.iter().filter(rival).cloned().collect()
     }
@@ -236,9 +236,7 @@ impl Probabilities {
         let mut logs = vec![f64::NEG_INFINITY; sets.len()];
         for &index in &order {
             let set = &sets[index];
-            let part = |other: &&usize| {
-                sets[**other].effects.len() < set.effects.len() && contains(&set.effects, &sets[**other].effects)
-            };
+            let part = |other: &&usize| is_part(&sets[**other].effects, &set.effects);
             let likeliest = order.iter().filter(part).max_by(|a, b| logs[**a].total_cmp(&logs[**b]));
             let (log, nats, rare) = likeliest
                 .filter(|&&other| logs[other] > 0.0)
@@ -265,10 +263,6 @@ impl Probabilities {
         ranking.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         ranking
     }
-}
-
-fn contains(larger: &[&str], smaller: &[&str]) -> bool {
-    smaller.iter().all(|name| larger.contains(name))
 }
 
 /// How probable it is that no effect of the library is it: from how far what is left stands out beyond a limit, and

@@ -9,7 +9,7 @@
 
 use realfft::RealFftPlanner;
 
-use crate::fit::Problem;
+use crate::fit::{Problem, of_channel};
 
 /// Rows of a window.
 const WINDOW: usize = 2048;
@@ -27,7 +27,7 @@ pub(crate) fn left_over(problem: &Problem, whitened: &[f64]) -> f64 {
     let period_s = problem.record.inputs.period_s;
     (0..channels)
         .map(|channel| {
-            let series: Vec<f64> = whitened.iter().skip(channel).step_by(channels).copied().collect();
+            let series: Vec<f64> = of_channel(whitened, channel, channels).collect();
             excess(&series, valid, period_s)
         })
         .fold(0.0, f64::max)

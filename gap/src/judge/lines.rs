@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 
 use realfft::RealFftPlanner;
 
+use super::group::Group;
 use crate::fit::Problem;
 
 /// Frequencies that are looked at [Hz]: no slower than two periods of the log.
@@ -16,17 +17,8 @@ const TO_HZ: f64 = 250.0;
 /// Finer than one line a log length by this.
 const FINER: usize = 4;
 
-/// A line that was chosen.
-#[derive(Debug)]
-pub(crate) struct Line {
-    /// Sine and cosine.
-    pub(crate) torques: Vec<Vec<f64>>,
-    /// What the choice among all costs [nats].
-    pub(crate) choice: f64,
-}
-
-/// The strongest line in a drive; none where the log is too short for one.
-pub(crate) fn line(problem: &Problem, drive: &[f64]) -> Option<Line> {
+/// Sine and cosine of the strongest line in a drive; none where the log is too short for one.
+pub(crate) fn line(problem: &Problem, drive: &[f64]) -> Option<Group> {
     let period_s = problem.record.inputs.period_s;
     let length = (FINER * drive.len()).next_power_of_two();
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
@@ -50,5 +42,5 @@ pub(crate) fn line(problem: &Problem, drive: &[f64]) -> Option<Line> {
         let at = |row: usize| (TAU * (best_hz * row as f64 * period_s + quarter)).cos();
         (0..drive.len()).map(at).collect()
     };
-    Some(Line { torques: vec![wave(0.0), wave(-0.25)], choice: independent.max(1.0).ln() })
+    Some(Group { of: "a line in time", torques: vec![wave(0.0), wave(-0.25)], choice: independent.max(1.0).ln() })
 }

@@ -6,6 +6,7 @@
 //!
 //! Each moment pays for its choice among all places and lengths; what else takes the same is for the joint fit to say.
 
+use super::group::Group;
 use crate::fit::Problem;
 
 /// Rows that a torque lasts.
@@ -19,15 +20,6 @@ const AFTER: usize = 100;
 /// What a moment must bring beyond its choice [nats].
 const LEAST: f64 = 5.0;
 
-/// Moments that were chosen.
-#[derive(Debug)]
-pub(crate) struct Moments {
-    /// A box each.
-    pub(crate) torques: Vec<Vec<f64>>,
-    /// What their choice among all costs [nats].
-    pub(crate) choice: f64,
-}
-
 /// A box somewhere.
 struct Moment {
     row: usize,
@@ -36,8 +28,8 @@ struct Moment {
     choice: f64,
 }
 
-/// The moments that a drive speaks for most; none where chance may be all there is.
-pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Moments> {
+/// The moments that a drive speaks for most, a box each; none where chance may be all there is.
+pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
     let rows = drive.len();
     let seen = problem.path.seen();
     let mut sums = vec![0.0];
@@ -79,7 +71,8 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Moments> {
         let inside = moment.row..moment.row + moment.length;
         (0..rows).map(|row| f64::from(u8::from(inside.contains(&row)))).collect()
     };
-    (!chosen.is_empty()).then(|| Moments {
+    (!chosen.is_empty()).then(|| Group {
+        of: "a few moments",
         torques: chosen.iter().map(torque).collect(),
         choice: chosen.iter().map(|moment| moment.choice).sum(),
     })

@@ -132,7 +132,7 @@ fn nearest(problem: &Problem, fit: &Fit) -> Vec<(&'static str, f64)> {
         solve(&problem.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.gain)
     };
     let base = gain(&[]);
-    let own = names(problem, fit);
+    let own = names(fit);
     let mut best: BTreeMap<&'static str, f64> = BTreeMap::new();
     for (index, candidate) in problem.candidates.iter().enumerate() {
         if own.contains(&candidate.effect) {

@@ -11,7 +11,7 @@ use crate::fit::Fit;
 const PIECES: usize = 20;
 /// What one stretch may bring by itself [nats].
 const ALONE: f64 = 12.0;
-/// What noise that is not known may bring at the most: a motor that meets its ceiling does so in one stretch too [nats].
+/// What noise that is not known may bring at the most [nats].
 const MOST: f64 = 60.0;
 
 /// What of the gain of a fit over another counts for nothing [nats].

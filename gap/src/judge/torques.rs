@@ -1,5 +1,6 @@
 //! Torques that an effect might be, in groups by what they are functions of.
 
+use super::group::Group;
 use super::lines::line;
 use super::moments::moments;
 use crate::fit::{Fit, Problem};
@@ -23,15 +24,6 @@ const WANDERS_NATS: [f64; 2] = [40.0, 12.0];
 type Series = Vec<f64>;
 type Functions = (&'static str, Vec<Series>);
 
-/// Torques that are functions of the same.
-pub(crate) struct Group {
-    /// What of.
-    pub(crate) of: &'static str,
-    pub(crate) torques: Vec<Series>,
-    /// What their choice among others costs [nats].
-    pub(crate) choice: f64,
-}
-
 /// Every group at a fit.
 pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     let motion = Motion::new(problem, fit);
@@ -44,14 +36,8 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     let mut groups: Vec<Group> =
         functions.into_iter().map(|(of, torques)| Group { of, choice: choice(of), torques }).collect();
     let drive = problem.path.drive(&problem.whitener, &fit.residual);
-    let tone = line(problem, &drive);
-    groups.extend(tone.map(|line| Group {
-        of: "a line in time",
-        torques: line.torques,
-        choice: line.choice + WARY_NATS[way],
-    }));
-    let few = moments(problem, &drive);
-    groups.extend(few.map(|few| Group { of: "a few moments", torques: few.torques, choice: few.choice }));
+    groups.extend(line(problem, &drive).map(|line| Group { choice: line.choice + WARY_NATS[way], ..line }));
+    groups.extend(moments(problem, &drive));
     for torque in groups.iter_mut().flat_map(|group| &mut group.torques) {
         *torque = scaled(torque).iter().map(|value| UNIT_NM * value).collect();
     }

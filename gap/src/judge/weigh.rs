@@ -56,14 +56,15 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
             let evidence = fit.evidence(temper) - search.null.evidence(temper) - alone(search, fit) / temper;
             let (cost, rare) = costs(problem, &fit.set.0);
             let nats = evidence - against(problem, search, fit, tolerance);
-            Weighed { effects: names(problem, fit), fit: Some(index), nats, cost, rare }
+            Weighed { effects: names(fit), fit: Some(index), nats, cost, rare }
         })
         .collect();
     // what a set has more than a smaller one must be worth it
     let excess = (search.null.square - closest.square).max(1.0);
     for (index, fit) in search.fits.iter().enumerate() {
         for (other, smaller) in search.fits.iter().enumerate() {
-            let worthless = is_part(smaller, fit) && smaller.square - fit.square < LEAST_SHARE * excess;
+            let worthless =
+                is_part(&smaller.effects, &fit.effects) && smaller.square - fit.square < LEAST_SHARE * excess;
             let most = all[other].nats - all[other].cost + all[index].cost - 1.0;
             if worthless && all[index].nats > most {
                 all[index].nats = most;
@@ -81,8 +82,8 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
 }
 
 /// Names of a fit's effects, in order.
-pub(crate) fn names(problem: &Problem, fit: &Fit) -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = fit.set.0.iter().map(|&index| problem.candidates[index].effect).collect();
+pub(crate) fn names(fit: &Fit) -> Vec<&'static str> {
+    let mut names = fit.effects.clone();
     names.sort_unstable();
     names
 }
@@ -97,14 +98,23 @@ fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
     (COST * added + COST_OF_SHIFT * shifts + slowly, RARE * added + RARE_SHIFT * shifts + beside + 0.5 * slowly)
 }
 
-fn is_part(smaller: &Fit, larger: &Fit) -> bool {
-    smaller.set.0.len() < larger.set.0.len() && smaller.effects.iter().all(|effect| larger.effects.contains(effect))
+/// Whether a set holds all of another one.
+pub(crate) fn holds(larger: &[&str], smaller: &[&str]) -> bool {
+    smaller.iter().all(|effect| larger.contains(effect))
+}
+
+/// The same, and more.
+pub(super) fn is_part(smaller: &[&str], larger: &[&str]) -> bool {
+    smaller.len() < larger.len() && holds(larger, smaller)
 }
 
 /// What one stretch of the log carries alone, against the nominal parameters and against all but one of the effects.
 /// A motor meets its ceiling in one stretch by nature.
 fn alone(search: &Search, fit: &Fit) -> f64 {
-    let smaller = search.fits.iter().filter(|other| is_part(other, fit) && other.set.0.len() + 1 == fit.set.0.len());
+    let smaller = search
+        .fits
+        .iter()
+        .filter(|other| is_part(&other.effects, &fit.effects) && other.set.0.len() + 1 == fit.set.0.len());
     let has = |fit: &Fit| fit.effects.contains(&"torque_saturation");
     let steady = smaller.chain([&search.null]).filter(|smaller| has(smaller) == has(fit));
     steady.map(|smaller| carried_alone(smaller, fit)).fold(0.0, f64::max)
@@ -130,7 +140,9 @@ fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: &Tolerance)
 /// Whether a fit is worth more with an effect than without it, though size and shape stand for each other.
 fn helps(search: &Search, fit: &Fit, place: usize) -> bool {
     let without = |other: &&Fit| {
-        other.set.0.len() + 1 == fit.set.0.len() && is_part(other, fit) && !other.effects.contains(&fit.effects[place])
+        other.set.0.len() + 1 == fit.set.0.len()
+            && is_part(&other.effects, &fit.effects)
+            && !other.effects.contains(&fit.effects[place])
     };
     let alone = fit.set.0.len() == 1;
     let mut smaller = search.fits.iter().filter(without).chain(alone.then_some(&search.null)).peekable();

@@ -24,15 +24,14 @@ const CEILINGS_SEEN: [f64; 6] = [1.0, 0.985, 0.965, 0.93, 0.85, 0.7];
 const CEILINGS_UNSEEN: [f64; 16] =
     [1.0, 0.99, 0.975, 0.96, 0.945, 0.93, 0.915, 0.9, 0.88, 0.855, 0.82, 0.77, 0.7, 0.6, 0.5, 0.4];
 
+/// Damping at which a mode is looked for.
+pub(crate) const MODE_DAMPING: f64 = 0.03;
+
 /// What the log offers to the effects.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Offer<'a> {
+pub struct Offer {
     /// Largest motor torque that was predicted or measured [N m].
     pub peak_torque_nm: f64,
-    /// Cycles a revolution at which the torque residual has lines.
-    pub cycles: &'a [f64],
-    /// Frequencies at which part of the inertia may sit on a spring [Hz].
-    pub modes_hz: &'a [f64],
     /// Whether the motor torque is measured.
     pub sees_torque: bool,
     /// Whether the cross rate is.
@@ -55,15 +54,17 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
     match name {
         // a scale of the torque shows where the torque is measured
         "torque_scale" if !offer.sees_torque => Vec::new(),
-        // the pick-off shows the stop itself, and its steps
-        "stop_angle" | "pickoff_quantisation" => Vec::new(),
+        // the pick-off shows the stop itself, and its steps; ripple is too narrow for a grid
+        "stop_angle" | "pickoff_quantisation" | "torque_ripple" => Vec::new(),
         _ if !releases(name).is_empty() => vec![released(effect, releases(name))],
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
         "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),
         "friction_drift" => grid(effect, &[0.12, 0.4, 1.3].map(|share| vec![0.1, share * seconds])),
         "cable_hysteresis" => grid(effect, &[0.0015, 0.005, 0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])),
-        "flexible_mode" => grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, 0.03])),
+        "flexible_mode" => {
+            grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, MODE_DAMPING]))
+        }
         "presliding" => {
             // in the place of the clamp, and on it
             let mut settings = [3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along]).to_vec();
@@ -78,25 +79,23 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
             let settings: Vec<Vec<f64>> = shares.iter().map(|share| vec![share * offer.peak_torque_nm]).collect();
             secants(effect, &settings)
         }
-        // lines too narrow for a grid
-        "torque_ripple" => Vec::new(),
         _ => grid(effect, &[effect.typical()]),
     }
 }
 
-/// Candidates at the lines that are on offer.
+/// Candidates too narrow for a grid: ripple of so many cycles a revolution, modes of such frequencies [Hz].
 #[must_use]
-pub fn narrow(offer: &Offer) -> Vec<Candidate> {
+pub fn narrow(cycles: &[f64], modes_hz: &[f64]) -> Vec<Candidate> {
     let ripple = |cycles: &f64| {
         let quarter = std::f64::consts::FRAC_PI_2;
         let probes = vec![(vec![1e-4, *cycles, 0.0], 1e-4), (vec![1e-4, *cycles, quarter], 1e-4)];
         Candidate { effect: "torque_ripple", probes, prior: vec![(0.0, 5e-4); 2], releases: &[], siblings: 100 }
     };
     let mode = |hz: &f64| {
-        let probes = vec![(vec![0.015, *hz, 0.03], 0.015)];
+        let probes = vec![(vec![0.015, *hz, MODE_DAMPING], 0.015)];
         Candidate { effect: "flexible_mode", probes, prior: vec![(0.0, 0.075)], releases: &[], siblings: 100 }
     };
-    offer.cycles.iter().map(ripple).chain(offer.modes_hz.iter().map(mode)).collect()
+    cycles.iter().map(ripple).chain(modes_hz.iter().map(mode)).collect()
 }
 
 /// The nominal parameters that an effect shifts; none where it adds something.

@@ -6,7 +6,7 @@ mod model;
 mod nuisance;
 
 pub use apply::apply;
-pub(crate) use candidates::releases;
 pub use candidates::{Candidate, Offer, candidates, narrow};
+pub(crate) use candidates::{MODE_DAMPING, releases};
 pub use model::{hold, not_looked_for, platform};
 pub use nuisance::{Nuisance, nuisances};

@@ -5,8 +5,7 @@ use std::fmt::Write;
 use super::picture::{Line, SCRIPT, Tube, chart, plot, thinned};
 use crate::diagnose::Diagnosis;
 use crate::fit::{predicted, raw_residual};
-use crate::judge::Verdict;
-use crate::judge::experiment;
+use crate::judge::{Verdict, experiment};
 
 pub(crate) const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.4em}h2{font-size:1.1em;margin-top:1.6em}table{border-collapse:collapse}td,th{padding:2px 12px 2px 0;text-align:left;\
