@@ -13,6 +13,7 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum};
+use gimbal_log::Column;
 use gimbal_model_file::{ModelFile, effects};
 use gimbal_plant::EffectError;
 use gimbal_servo::{BuildError, Config, Fixed};
@@ -149,10 +150,11 @@ fn run_profile(
 }
 
 fn run_log(path: &Path, model: &ModelFile, options: &Options) -> Result<Summary, Failure> {
-    let source = Source::open(path, options.out.is_some())?;
+    let source = Source::open(path, options.out.is_some(), crosses(model, options))?;
     let config = Config { period_s: source.period_s, ..model.config };
     let mut notes = source.remarks.clone();
     notes.extend(left_out(model, options));
+    notes.extend(cross_rate_note(&source, model, options));
     let mut files = Files::create(options, None, Some(&source))?;
     let finished = with_model(options, &config, model, |runs| drive::log(runs, &source, &mut files))?;
     notes.extend(told(&source.finish()));
@@ -193,6 +195,23 @@ fn left_out(model: &ModelFile, options: &Options) -> Option<String> {
     let (_, names) = effects::flown(&model.effects);
     let told = !names.is_empty() && !matches!(options.kind(), Kind::Plant);
     told.then(|| format!("the flight law leaves out {}; --plant has it", names.join(", ")))
+}
+
+/// Whether the vehicle rate about x acts.
+fn crosses(model: &ModelFile, options: &Options) -> bool {
+    options.plant && model.effects.iter().any(|entry| entry.effect.name() == "cross_axis_coupling")
+}
+
+/// A rate about x that nothing takes, or that is missing.
+fn cross_rate_note(source: &Source, model: &ModelFile, options: &Options) -> Option<String> {
+    let note = match (crosses(model, options), source.columns.contains(&Column::CrossRate)) {
+        (true, false) => "the log has no `cross_rate_radps`: cross_axis_coupling does nothing",
+        (false, true) if options.plant => {
+            "`cross_rate_radps` is not used: it acts through cross_axis_coupling, which the model has not"
+        }
+        _ => return None,
+    };
+    Some(note.to_owned())
 }
 
 /// What is worth a note about a log.

@@ -82,6 +82,34 @@ fn closed_form_a_settled_start_moves_nothing_under_a_steady_load() {
 }
 
 #[test]
+fn closed_form_the_plant_takes_the_cross_rate_through_its_coupling_alone() {
+    let bench = Bench::new();
+    let log = |title: &str, cross: &str| {
+        let rows = (0..1000).map(|k| format!("{},0,50,9.8,0.1{cross}\n", f64::from(k) / 1000.0));
+        format!("{}{title}\n{}", program::HEADER, rows.collect::<String>())
+    };
+    bench.write("log.csv", log(",cross_rate_radps", ",0.25"));
+    bench.write("without.csv", log("", ""));
+    // 4e-2 kg m2 * 0.1 rad/s * 0.25 rad/s = 1e-3 N m
+    bench.write("coupled.toml", "[effects]\ncross_axis_coupling = { coefficient_kg_m2 = 4e-2 }\n");
+    bench.write("pushed.toml", "[effects]\nconstant_torque = { torque_nm = 1e-3 }\n");
+    let run = |log: &str, model: &str, system: &[&str]| {
+        bench.json(&[&["run", log, "--json", "--model", model], system].concat())
+    };
+    let (coupled, pushed) = (run("log.csv", "coupled.toml", &["--plant"]), run("log.csv", "pushed.toml", &["--plant"]));
+    let peak_rad = |run| number(run, "peak_gimbal_angle_rad");
+    assert!((peak_rad(&coupled) / peak_rad(&pushed) - 1.0).abs() < 1e-9, "{coupled} {pushed}");
+    assert!(!coupled["notes"].to_string().contains("cross"), "{coupled}");
+    // what does not act is told
+    let nothing = run("without.csv", "coupled.toml", &["--plant"]);
+    assert!((peak_rad(&nothing) / peak_rad(&pushed) - 1.0).abs() > 1e-3);
+    assert!(nothing["notes"].to_string().contains("the log has no `cross_rate_radps`"), "{nothing}");
+    assert!(pushed["notes"].to_string().contains("`cross_rate_radps` is not used"), "{pushed}");
+    let law = run("log.csv", "coupled.toml", &[]);
+    assert!(law["notes"].to_string().contains("the flight law leaves out cross_axis_coupling"), "{law}");
+}
+
+#[test]
 fn contract_the_main_job_needs_no_argument() {
     let bench = Bench::new();
     let text = bench.succeed(&[]);

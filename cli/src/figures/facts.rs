@@ -179,7 +179,7 @@ fn stays(consistent: &Config, printed: &Config) -> Result<Fact, BuildError> {
         let case = Profile::Torque { torque_nm: 3e5 * DYNE_CM_NM, off_s: f64::INFINITY };
         let mut model = Flight::<f32>::new(&case.config(config), Initial::Zero)?;
         for k in 0..Profile::len(config.period_s) {
-            model.step(&case.row(k, config.period_s));
+            model.step(&case.row(k, config.period_s).into());
         }
         Ok::<f64, BuildError>(model.totals().residual_offset_rad / DEGREE_RAD)
     };

@@ -133,7 +133,7 @@ fn plant_velocity_error_mps(config: &Config, case: Case, accel_g: f64) -> Result
     let config = case.config(config);
     let mut model = Reference::new(&config, Initial::Zero).map_err(refused)?;
     for k in 0..Profile::len(config.period_s) {
-        model.step(&case.row(accel_g, k, config.period_s));
+        model.step(&case.row(accel_g, k, config.period_s).into());
     }
     let [x, y] = model.sample().velocity_error_mps;
     Ok(x.hypot(y))

@@ -9,7 +9,7 @@ use super::sheet::{Difference, MARKED};
 use crate::exit::Failure;
 use crate::interrupt;
 use crate::run::flight::Flight;
-use crate::run::model::{Initial, Model, Sample};
+use crate::run::model::{Drive, Initial, Model, Sample};
 use crate::run::reference::Reference;
 
 /// Both runs.
@@ -30,7 +30,7 @@ impl Trace {
         let mut plant = Reference::new(config, initial).map_err(refused)?;
         let take = |model: &mut dyn Model| {
             let samples = rows.iter().map(|row| {
-                model.step(row);
+                model.step(&Drive::from(*row));
                 model.sample()
             });
             samples.collect()

@@ -68,7 +68,7 @@ pub(super) fn profile(
 ) -> Result<Finished, Failure> {
     for k in 0..Profile::len(period_s) {
         let input = profile.row(k, period_s);
-        model.step(&input);
+        model.step(&input.into());
         if files.wanted() {
             let (time_s, sample) = (f64::from(k) * period_s, model.sample());
             if let Some(output) = &mut files.output {
@@ -90,15 +90,15 @@ pub(super) fn log(model: &mut dyn Model, source: &Source, files: &mut Files) -> 
     while let Some(portion) = source.next()? {
         interrupt::check()?;
         if files.wanted() {
-            for (index, (input, row)) in portion.inputs.iter().zip(&portion.rows).enumerate() {
-                model.step(input);
+            for (index, (drive, row)) in portion.inputs.iter().zip(&portion.rows).enumerate() {
+                model.step(drive);
                 let (time_s, sample) = (portion.times_s[index], model.sample());
                 if let Some(output) = &mut files.output {
                     let from = row.map(|row| (&portion.batch, row as usize));
-                    output.row(time_s, input, &sample, from)?;
+                    output.row(time_s, &drive.input, &sample, from)?;
                 }
                 if let Some((_, picture)) = &mut files.picture {
-                    picture.push(time_s, input, &sample);
+                    picture.push(time_s, &drive.input, &sample);
                 }
             }
         } else {

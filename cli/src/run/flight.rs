@@ -1,8 +1,8 @@
 //! The flight law: the code that is tested and flown, stepped as a flight computer would.
 
-use gimbal_servo::{BuildError, Config, Digest, Faults, Input, Law, Number, Output, State, Stop, effects};
+use gimbal_servo::{BuildError, Config, Digest, Faults, Law, Number, Output, State, Stop, effects};
 
-use super::model::{Initial, Model, Sample, Totals, share_on_stop};
+use super::model::{Drive, Initial, Model, Sample, Totals, share_on_stop};
 
 /// The law in one number system.
 pub(crate) struct Flight<N: Number> {
@@ -64,8 +64,8 @@ impl<N: Number> Flight<N> {
 
 impl<N: Number> Model for Flight<N> {
     #[inline]
-    fn step(&mut self, row: &Input<f64>) {
-        let input = self.law.units().input(row);
+    fn step(&mut self, row: &Drive) {
+        let input = self.law.units().input(&row.input);
         if self.samples == 0 && self.initial == Initial::Settled {
             self.state = self.law.settled(input);
             if let Some((law, state)) = &mut self.effects {

@@ -5,10 +5,10 @@ use gimbal_servo::{Config, Faults, Input};
 /// One axis that takes rows; samples and sums are SI.
 pub(crate) trait Model {
     /// Takes the row of the next instant.
-    fn step(&mut self, row: &Input<f64>);
+    fn step(&mut self, row: &Drive);
 
     /// Takes rows that nobody looks at one by one.
-    fn steps(&mut self, rows: &[Input<f64>]) {
+    fn steps(&mut self, rows: &[Drive]) {
         for row in rows {
             self.step(row);
         }
@@ -19,6 +19,22 @@ pub(crate) trait Model {
 
     /// What has added up over all rows.
     fn totals(&self) -> Totals;
+}
+
+/// What drives a model at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drive {
+    /// What the flight law takes, and the plant.
+    pub(crate) input: Input<f64>,
+    /// Vehicle rate about x [rad/s]; the plant's `cross_axis_coupling` alone takes it.
+    pub(crate) cross_rate_radps: f64,
+}
+
+impl From<Input<f64>> for Drive {
+    /// Without a rate about x.
+    fn from(input: Input<f64>) -> Self {
+        Self { input, cross_rate_radps: 0.0 }
+    }
 }
 
 /// The axis at one instant.

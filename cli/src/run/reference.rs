@@ -2,9 +2,9 @@
 
 use gimbal_model_file::ModelEffect;
 use gimbal_plant::{EffectError, Plant, Row, State, Stop, StopEvent, StopEventKind};
-use gimbal_servo::{BuildError, Config, Digest, Faults, Input};
+use gimbal_servo::{BuildError, Config, Digest, Faults};
 
-use super::model::{Initial, Model, Sample, Totals};
+use super::model::{Drive, Initial, Model, Sample, Totals};
 
 /// phi beyond which the linear equations no longer hold [rad].
 const SMALL_ANGLE_RAD: f64 = 0.1;
@@ -65,13 +65,13 @@ impl Reference {
 }
 
 impl Model for Reference {
-    fn step(&mut self, input: &Input<f64>) {
+    fn step(&mut self, &Drive { input, cross_rate_radps }: &Drive) {
         let row = Row {
             accel_x_mps2: input.accel_x_mps2,
             accel_y_mps2: input.accel_y_mps2,
             accel_z_mps2: input.accel_z_mps2,
             vehicle_rate_radps: input.vehicle_rate_radps,
-            cross_rate_radps: 0.0,
+            cross_rate_radps,
             spin_rate_radps: input.spin_rate_radps,
             torque_nm: input.torque_nm,
         };

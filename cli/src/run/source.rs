@@ -10,6 +10,7 @@ use std::thread::JoinHandle;
 use gimbal_log::{Batch, Column, LogError, Needs, Reader, Row, TimeReport};
 use gimbal_servo::Input;
 
+use super::model::Drive;
 use crate::exit::Failure;
 use crate::progress::Watched;
 
@@ -21,14 +22,14 @@ const PORTIONS: usize = 4;
 const LONGEST_GAP_S: f64 = 1.0;
 /// Periods that the law can be built for [s].
 const PERIODS_S: std::ops::RangeInclusive<f64> = 0.25e-3..=4e-3;
-/// Columns that drive the model.
-const DRIVING: [Column; 4] = [Column::AccelX, Column::AccelY, Column::AccelZ, Column::VehicleRate];
+/// Columns that drive the model, the last one `cross_axis_coupling` alone.
+const DRIVING: [Column; 5] = [Column::AccelX, Column::AccelY, Column::AccelZ, Column::VehicleRate, Column::CrossRate];
 
 /// Consecutive inputs, with the rows that they come from.
 #[derive(Debug)]
 pub(crate) struct Portion {
     pub(crate) times_s: Vec<f64>,
-    pub(crate) inputs: Vec<Input<f64>>,
+    pub(crate) inputs: Vec<Drive>,
     /// Row of the batch behind each input; none for one that was filled in.
     pub(crate) rows: Vec<Option<u32>>,
     pub(crate) batch: Batch,
@@ -56,8 +57,8 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// Opens a log and finds its rate.
-    pub(crate) fn open(path: &Path, keeps_extras: bool) -> Result<Self, Failure> {
+    /// Opens a log and finds its rate; `takes_cross_rate` where the vehicle rate about x acts, if the log has it.
+    pub(crate) fn open(path: &Path, keeps_extras: bool, takes_cross_rate: bool) -> Result<Self, Failure> {
         let unreadable = |error| LogError::unreadable(path, error);
         let file = Watched::open(path).map_err(unreadable)?;
         let mut reader = Reader::new(file, path, Needs::Run)?;
@@ -65,7 +66,8 @@ impl Source {
         reader.next_batch(&mut first.batch)?;
         let period_s = period_s(path, &reader.time())?;
         let layout = reader.layout();
-        let columns = Column::ALL.into_iter().filter(|column| layout.position(*column).is_some()).collect();
+        let columns: Vec<Column> =
+            Column::ALL.into_iter().filter(|column| layout.position(*column).is_some()).collect();
         let extra_names = layout.extra_names().map(str::to_owned).collect();
         let remarks = reader.remarks().to_vec();
 
@@ -74,7 +76,9 @@ impl Source {
         for _ in 1..PORTIONS {
             let _ = empty.send(Portion::new(keeps_extras));
         }
-        let mend = Mend { period_s, last: None, last_inputs: [0.0; 4], mended: Mended::default() };
+        let driving =
+            if takes_cross_rate && columns.contains(&Column::CrossRate) { &DRIVING[..] } else { &DRIVING[..4] };
+        let mend = Mend { period_s, driving, last: None, last_inputs: [0.0; 5], mended: Mended::default() };
         let thread = std::thread::spawn(move || pump(reader, first, mend, &fill, &drained));
         Ok(Self { period_s, remarks, columns, extra_names, full, empty, thread })
     }
@@ -111,17 +115,18 @@ impl Portion {
         }
     }
 
-    fn push(&mut self, time_s: f64, [x, y, z, rate]: [f64; 4], row: Option<u32>) {
+    fn push(&mut self, time_s: f64, [x, y, z, rate, cross_rate_radps]: [f64; 5], row: Option<u32>) {
         self.times_s.push(time_s);
         self.rows.push(row);
-        self.inputs.push(Input {
+        let input = Input {
             accel_x_mps2: x,
             accel_y_mps2: y,
             accel_z_mps2: z,
             vehicle_rate_radps: rate,
             torque_nm: 0.0,
             spin_rate_radps: 0.0,
-        });
+        };
+        self.inputs.push(Drive { input, cross_rate_radps });
     }
 }
 
@@ -147,9 +152,10 @@ fn period_s(path: &Path, time: &TimeReport) -> Result<f64, Failure> {
 /// Turns rows into inputs.
 struct Mend {
     period_s: f64,
-    last: Option<(f64, [f64; 4])>,
+    driving: &'static [Column],
+    last: Option<(f64, [f64; 5])>,
     /// Last known sample of each driving column.
-    last_inputs: [f64; 4],
+    last_inputs: [f64; 5],
     mended: Mended,
 }
 
@@ -184,8 +190,8 @@ impl Mend {
     }
 
     /// The driving samples of a row, missing ones as they were last; the column that never had one.
-    fn inputs(&mut self, row: &Row) -> Result<[f64; 4], Column> {
-        for (last, column) in self.last_inputs.iter_mut().zip(DRIVING) {
+    fn inputs(&mut self, row: &Row) -> Result<[f64; 5], Column> {
+        for (last, &column) in self.last_inputs.iter_mut().zip(self.driving) {
             let value = row[column];
             if value.is_nan() {
                 self.mended.missing_samples += 1;
@@ -200,7 +206,7 @@ impl Mend {
     }
 
     /// Inputs on the line between two rows.
-    fn fill(&mut self, portion: &mut Portion, from: (f64, [f64; 4]), to: (f64, [f64; 4]), periods: f64) {
+    fn fill(&mut self, portion: &mut Portion, from: (f64, [f64; 5]), to: (f64, [f64; 5]), periods: f64) {
         let mut step = 1.0;
         while step < periods {
             let share = step / periods;

@@ -64,7 +64,7 @@ pub(super) fn after(consistent: &Config, printed: &Config) -> Result<Vec<Fact>, 
         let mut at_5_s = None;
         let rows = Profile::len(config.period_s);
         for k in 0..rows {
-            model.step(&Profile::Unbalance.row(k, config.period_s));
+            model.step(&Profile::Unbalance.row(k, config.period_s).into());
             if k == rows / 2 {
                 at_5_s = Some(model.sample());
             }
