@@ -144,7 +144,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         || if gap { free_running(&record, model, &decision, &fit) } else { Vec::new() },
         || {
             let portrait = left.then(|| portrait(&problem, &fit));
-            let detectable = detectable(&problem, &model.tolerance);
+            let detectable = detectable(&problem, &fit, &decision, &model.tolerance);
             (portrait, detectable, correlations(&problem, &fit), curve(&problem, &fit, &shrink.nominal))
         },
     );

@@ -81,6 +81,7 @@ fn the_report_keeps_its_schema() {
     for (list, keys) in [
         ("effects", &["name", "block", "probability", "parameters", "removes"][..]),
         ("alternatives", &["effects", "probability", "told_apart_by"][..]),
+        ("detectable", &["name", "parameter", "unit", "seen"][..]),
     ] {
         for entry in report[list].as_array().expect(list) {
             for key in keys {

@@ -1,7 +1,7 @@
 //! One diagnosis against what was put in.
 
 use gimbal_gap::Diagnosis;
-use gimbal_gap::judge::Verdict;
+use gimbal_gap::judge::{Seen, Verdict};
 use gimbal_plant::Effect;
 use serde_json::Value;
 
@@ -121,12 +121,11 @@ fn closed_percent(report: &Value) -> Option<f64> {
 }
 
 fn marked(diagnosis: &Diagnosis, truth: &Truth) -> bool {
-    // a ceiling is larger where it shows less, and has no size in common with the rest
-    let limit = truth.effect.name() == "torque_saturation";
     let own = diagnosis.detectable.iter().find(|own| own.effect == truth.effect.name());
     own.is_none_or(|own| match own.size {
         None => true,
-        Some(_) if limit => false,
+        // a ceiling, and a stop that came nearer
+        Some(size) if own.seen == Seen::Below => truth.values[0] > size,
         Some(size) => size > truth.size,
     })
 }

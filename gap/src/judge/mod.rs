@@ -23,7 +23,7 @@ pub use closed_loop::{Yardstick, free_running, one_step};
 pub use correlation::{Correlation, bounds_hit, correlations};
 pub use curve::{CurvePoint, curve};
 pub use decide::{Decision, Found, SetProbability, Verdict, decide};
-pub use detectable::{Detectable, detectable};
+pub use detectable::{Detectable, Seen, detectable};
 pub use experiment::experiment;
 pub use portrait::{Portrait, portrait};
 pub use shrink::{Shrink, ShrinkSignal, shrink};

@@ -2,6 +2,7 @@
 
 mod channel;
 mod faults;
+mod plateau;
 mod quiet;
 mod rough;
 mod stuck;
@@ -12,6 +13,7 @@ use gimbal_servo::Config;
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
 pub use faults::faults;
+pub(crate) use plateau::{peak_rad, plateau};
 pub use quiet::RateNoise;
 pub(crate) use quiet::between;
 pub(crate) use rough::rough;
@@ -23,11 +25,8 @@ const LEAST_RATE_RADPS: f64 = 1.5e-3;
 const LEAST_ACCEL_MPS2: f64 = 0.1;
 /// Shares of the nominal stop between which the float may have touched it.
 const NEAR_STOP: [f64; 2] = [0.95, 1.05];
-/// Share of its largest excursion within which the pick-off counts as on the stop.
-const PLATEAU_SHARE: f64 = 4e-3;
-/// How far the rate before it would have carried the float until its middle, over that share: less than five for the
-/// smooth peak of any parabola.
-const ONWARD: f64 = 7.0;
+/// Least share of the nominal stop at which a plateau is one.
+const LEAST_STOP: f64 = 0.2;
 
 /// A log on its grid.
 #[derive(Debug, Clone)]
@@ -149,43 +148,27 @@ impl Record {
         }
     }
 
-    /// The stop shows as a plateau of the pick-off at its largest excursion; what follows it for a while is masked.
+    /// Time on the stop, or so near it that the float may have touched it, is masked with what follows it for a while.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
     fn find_plateau(&mut self, config: &Config) {
         let period_s = self.inputs.period_s;
         let Some(theta) = self.channels.iter().find(|channel| channel.signal == Signal::GyroAngle) else { return };
-        let peak = theta.values.iter().copied().filter(|value| value.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
-        if peak < 0.2 * config.gyro.stop_angle_rad {
+        let (peak, stop) = (peak_rad(&theta.values), config.gyro.stop_angle_rad);
+        if peak < LEAST_STOP * stop {
             return;
         }
-        let least = (0.008 / period_s) as usize;
-        let mut on_stop = vec![false; theta.values.len()];
-        let mut level = Vec::new();
-        let mut start = 0_usize;
-        for k in 0..=theta.values.len() {
-            if k < theta.values.len() && theta.values[k].abs() > peak * (1.0 - PLATEAU_SHARE) {
-                continue;
-            }
-            // it comes in with a rate, and stands still at once
-            let came = start.checked_sub(least).map_or(0.0, |before| peak - theta.values[before].abs());
-            let onward = came * 0.5 * (k - start) as f64 / least as f64;
-            if k - start > least && came > 10.0 * PLATEAU_SHARE * peak && onward > ONWARD * PLATEAU_SHARE * peak {
-                level.extend(theta.values[start..k].iter().map(|value| value.abs()));
-                on_stop[start..k].fill(true);
-            }
-            start = k + 1;
-        }
-        level.sort_by(f64::total_cmp);
-        self.plateau_rad = level.get(level.len() / 2).copied();
-        if level.is_empty() {
+        let plateau = plateau(&theta.values, period_s);
+        self.plateau_rad = plateau.as_ref().map(|plateau| plateau.level_rad);
+        let on_stop = if let Some(plateau) = plateau {
+            plateau.on_stop
+        } else {
             // a touch too short to be seen, wherever the stop is within its tolerance
-            let [near, beyond] = NEAR_STOP.map(|share| share * config.gyro.stop_angle_rad);
+            let [near, beyond] = NEAR_STOP.map(|share| share * stop);
             if peak < near || peak > beyond {
                 return;
             }
-            level = theta.values.iter().map(|value| value.abs()).filter(|value| *value > near).collect();
-            on_stop.iter_mut().zip(&theta.values).for_each(|(on, value)| *on = value.abs() > near);
-        }
+            theta.values.iter().map(|value| value.abs() > near).collect()
+        };
         let settle = (2.0 / period_s) as usize;
         let mut wait = 0;
         for (k, on_stop) in on_stop.iter().enumerate() {
@@ -199,7 +182,7 @@ impl Record {
         self.notes.push(format!(
             "the float was {} a stop for {:.2} s; masked with 2 s after each",
             if self.plateau_rad.is_some() { "on" } else { "near" },
-            level.len() as f64 * period_s
+            on_stop.iter().filter(|on_stop| **on_stop).count() as f64 * period_s
         ));
     }
 }

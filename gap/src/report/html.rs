@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::picture::{Line, SCRIPT, Tube, chart, plot, thinned};
 use crate::diagnose::Diagnosis;
 use crate::fit::{predicted, raw_residual};
-use crate::judge::{Verdict, experiment};
+use crate::judge::{Seen, Verdict, experiment};
 
 pub(crate) const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
 h1{font-size:1.4em}h2{font-size:1.1em;margin-top:1.6em}table{border-collapse:collapse}td,th{padding:2px 12px 2px 0;text-align:left;\
@@ -205,7 +205,8 @@ fn tables(out: &mut String, diagnosis: &Diagnosis) {
         Some(size) => {
             // a ratio has no unit: its name says of what
             let unit = if d.unit == "1" { d.parameter } else { d.unit };
-            format!("<tr><td>{}</td><td>{size:.2e} {unit}</td></tr>", d.effect)
+            let side = if d.seen == Seen::Below { "at or below " } else { "" };
+            format!("<tr><td>{}</td><td>{side}{size:.2e} {unit}</td></tr>", d.effect)
         }
         None => format!("<tr><td>{}</td><td>this log cannot show it</td></tr>", d.effect),
     });

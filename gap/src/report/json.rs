@@ -31,7 +31,7 @@ pub fn json(diagnosis: &Diagnosis, log: &str, model: &str) -> Value {
         "alternatives": [],
         "shrink": { "held_out": true, "signals": [], "velocity_error_mps": { "before": 0.0, "after": 0.0 } },
         "detectable": diagnosis.detectable.iter().map(|d| json!({
-            "name": d.effect, "parameter": d.parameter, "unit": d.unit, "size": d.size
+            "name": d.effect, "parameter": d.parameter, "unit": d.unit, "size": d.size, "seen": d.seen.name()
         })).collect::<Vec<_>>(),
         "ranking": [],
         "left_over": null,
