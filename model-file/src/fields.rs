@@ -32,7 +32,7 @@ pub(crate) const FIELDS: [(&str, &str, &str); 42] = [
     ("range", "axial_accel_mps2", "largest specific force along z [m/s2]"),
     ("range", "rate_radps", "largest rates [rad/s]"),
     ("range", "torque_nm", "largest external disturbance torque [N m]"),
-    ("tolerance", "default_relative", "relative, for every parameter not named below"),
+    ("tolerance", "default_relative", "relative, for every parameter not named below: T1 to T9, Jo and w_s among them"),
     ("tolerance", "friction_level", "relative, load friction"),
     ("tolerance", "viscous_friction", "relative"),
     ("tolerance", "mass_unbalance", "relative to the nominal size of the vector"),

@@ -5,11 +5,13 @@ use serde::{Deserialize, Serialize};
 
 /// Relative standard uncertainty of each nominal parameter, by the name of the effect that shifts it.
 ///
-/// A shift inside it is a nuisance; a shift beyond it is the effect of that name.
+/// A shift inside it is a nuisance; a shift beyond it is the effect of that name. The alignment of the accelerometers is
+/// not in the table: the diagnosis takes it to be known to 1e-3 rad about each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {
-    /// What holds for every parameter that the table does not name.
+    /// What holds for every parameter that the table does not name: T1 to T9, Jo and the bearing's slip rate, each by
+    /// itself.
     pub default_relative: f64,
     /// Load friction: the scatter of the paper's own measurements.
     pub friction_level: f64,

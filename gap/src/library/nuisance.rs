@@ -11,7 +11,7 @@ const BEYOND: f64 = 0.12;
 
 /// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of 1 % would not.
 const STEP: f64 = 0.02;
-/// Alignment of the accelerometers with the platform's axes [rad].
+/// Alignment of the accelerometers with the platform's axes, about each [rad]: the model file has no name for it.
 const ALIGNMENT_RAD: f64 = 1e-3;
 
 /// One nominal parameter.
@@ -125,4 +125,26 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative!(tolerance.pickoff_scale, "pickoff_scale", p => p.measurement.pickoff_factor),
         relative!(tolerance.torque_scale, "torque_scale", p => p.measurement.torque_factor),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use gimbal_model_file::{ModelFile, Tolerance};
+
+    use super::nuisances;
+
+    #[test]
+    #[allow(clippy::float_cmp, reason = "tolerances are copied")]
+    fn contract_what_the_table_does_not_name_takes_its_default() {
+        let tolerance = Tolerance { default_relative: 0.07, ..Tolerance::default() };
+        let all = nuisances(&tolerance, &crate::library::platform(&ModelFile::default()));
+        let of = |name: &str| all.iter().find(|own| own.name == name).expect("a nominal parameter").tolerance;
+        for name in ["T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9", "float inertia", "slip rate"] {
+            assert_eq!(of(name), 0.07, "{name}");
+        }
+        for axis in ["x", "y", "z"] {
+            assert_eq!(of(&format!("accelerometers about {axis}")), 1e-3);
+        }
+        assert_eq!((of("loop_gain"), of("friction_level")), (0.03, 0.15));
+    }
 }
