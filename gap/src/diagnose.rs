@@ -16,6 +16,9 @@ const TOO_QUIET: f64 = 0.98;
 /// How often the noise is taken again.
 const AGAIN: usize = 2;
 
+/// No fit that leaves more than this of the noise comes near a log.
+const ASTRAY: f64 = 1.5;
+
 /// A residual this many times the white noise of every sensor is no noise, however slow.
 const NO_NOISE: f64 = 25.0;
 /// The same where the effects named take nothing away.
@@ -74,17 +77,26 @@ impl Diagnosis {
 #[must_use]
 #[allow(clippy::too_many_lines, reason = "the way, told in its order")]
 pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
-    let mut record = Record::new(log, &model.config);
-    if !record.faults.is_empty() {
-        return refused(record);
+    let mut read = Record::new(log, &model.config);
+    if !read.faults.is_empty() {
+        return refused(read);
     }
-    let faults = faults(&record, model);
+    let faults = faults(&read, model);
     if !faults.is_empty() {
-        record.faults = faults;
-        return refused(record);
+        read.faults = faults;
+        return refused(read);
     }
-    record.quieten(&crate::library::platform(model));
-    let (mut problem, mut search) = settled(&record, model);
+    read.quieten(&crate::library::platform(model));
+    let whole = settled(&read, model);
+    let away = if astray(&whole) { read.away_from_stop(&model.config.bearing) } else { None };
+    let (mut problem, mut search) = match &away {
+        Some(away) => {
+            drop(whole);
+            settled(away, model)
+        }
+        None => whole,
+    };
+    let record = problem.record;
     let mut decision = decide(&problem, &search, &model.tolerance);
     let channels = record.channels.len();
     let mut fit = match decision.chosen {
@@ -98,7 +110,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         fit = search.null;
     }
     let period_s = record.inputs.period_s;
-    let [before, after] = [&shrink.nominal, &fit.prediction].map(|prediction| raw_residual(&record, prediction));
+    let [before, after] = [&shrink.nominal, &fit.prediction].map(|prediction| raw_residual(record, prediction));
     let spectra = [&before, &after].map(|residual| {
         let of = |place: usize| {
             Spectrum::new(&residual[place], &record.channels[place].valid, problem.noise[place], period_s)
@@ -141,7 +153,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let gap = decision.verdict != Verdict::NoGap;
     let left = matches!(decision.verdict, Verdict::PartlyExplained | Verdict::Unexplained);
     let (free_running, (portrait, detectable, correlations, curve)) = rayon::join(
-        || if gap { free_running(&record, model, &decision, &fit) } else { Vec::new() },
+        || if gap { free_running(record, model, &decision, &fit) } else { Vec::new() },
         || {
             let portrait = left.then(|| portrait(&problem, &fit));
             let detectable = detectable(&problem, &fit, &decision, &model.tolerance);
@@ -149,14 +161,14 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         },
     );
     let bounds_hit = bounds_hit(&problem, &fit);
-    let one_step = if gap { one_step(&record, &before, &after) } else { Vec::new() };
-    let found_regimes = if gap { regimes(&record, &fit.prediction, &total, channels) } else { Vec::new() };
+    let one_step = if gap { one_step(record, &before, &after) } else { Vec::new() };
+    let found_regimes = if gap { regimes(record, &fit.prediction, &total, channels) } else { Vec::new() };
     let found_spans = if gap && !fit.set.0.is_empty() { spans(&total, channels, period_s) } else { Vec::new() };
     let bands = if gap { Spectrum::bands(&spectra[0]) } else { Vec::new() };
     let not_looked_for = std::mem::take(&mut problem.not_looked_for);
     drop(problem);
     Diagnosis {
-        record,
+        record: away.unwrap_or(read),
         decision: Some(decision),
         blocks,
         bands,
@@ -206,6 +218,12 @@ fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
         found = search(&mut problem);
     }
     (problem, found)
+}
+
+/// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.
+fn astray((problem, search): &(Problem, Search)) -> bool {
+    let least = search.fits.iter().map(|fit| fit.square).fold(search.null.square, f64::min);
+    least > ASTRAY * problem.whitener.count() as f64
 }
 
 /// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.

@@ -157,3 +157,19 @@ fn wrong_data_are_named_and_no_effect_is_invented() {
         assert!(!diagnosis.record.faults.is_empty(), "{what}");
     }
 }
+
+#[test]
+fn what_follows_a_shove_onto_the_stop_is_diagnosed_by_itself() {
+    let mut log = log_with(Excitation::Manoeuvre, &[typical("cable_spring")]);
+    let stop_rad = ModelFile::default().config.gyro.stop_angle_rad;
+    let mut theta_rad = log.column(Column::GyroAngle).expect("the pick-off").to_vec();
+    // nothing that is logged moves it there, or back
+    for (k, theta) in theta_rad.iter_mut().take(2500).enumerate() {
+        let way = if k < 2300 { (k as f64 / 200.0).min(1.0) } else { (2500 - k) as f64 / 200.0 };
+        *theta += way * (stop_rad - *theta);
+    }
+    log.set(Column::GyroAngle, theta_rad);
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(names(&diagnosis), ["cable_spring"], "{:#}", report(&diagnosis)["notes"]);
+    assert!(diagnosis.record.first_s > 4.0 && diagnosis.record.first_s < 5.0, "{}", diagnosis.record.first_s);
+}

@@ -3,6 +3,7 @@
 mod draft;
 mod gross;
 mod ground;
+mod heavy;
 mod hypothesis;
 mod linear;
 mod normal;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::gross::gross;
+use super::heavy::heavy;
 use super::hypothesis::{Hypothesis, Point};
 use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
@@ -90,6 +91,7 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
     let glimpses = seen(&first);
     fits.extend(saturated(problem, null));
     fits.extend(gross(problem, null));
+    fits.extend(heavy(problem, null));
     fits.par_extend(
         first
             .par_iter()

@@ -24,6 +24,8 @@ const BANDS: usize = 36;
 const STEPS: usize = 120;
 /// Least power of noise, over the white noise that the samples themselves show.
 const LEAST_POWER: f64 = 1e-3;
+/// What noise of low frequency must bring: few lines show it, and it hides what is slow [nats].
+const SHOWN_NATS: f64 = 1.5;
 /// Corners that are tried [Hz].
 const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
 
@@ -40,6 +42,8 @@ pub struct Noise {
     pub low: f64,
     /// `f_c` [Hz].
     pub corner_hz: f64,
+    /// Lowest frequency at which it was measured [Hz].
+    pub from_hz: f64,
 }
 
 /// A whitening filter.
@@ -105,12 +109,10 @@ impl Whitener {
             } else {
                 0.0
             };
+            let powers = own.powers(shapes, plans.length() / 2, step_hz);
             let gain = |more: f64| -> Vec<f64> {
-                let of = |line: usize| {
-                    let hz = line as f64 * step_hz;
-                    own.power(hz, shapes.line(line)) + more * passed(hz)
-                };
-                (0..=plans.length() / 2).map(|line| 1.0 / of(line).max(LEAST_POWER).sqrt()).collect()
+                let of = |(line, power): (usize, &f64)| power + more * passed(line as f64 * step_hz);
+                powers.iter().enumerate().map(of).map(|power| 1.0 / power.max(LEAST_POWER).sqrt()).collect()
             };
             gains.push(gain(0.0));
             turning_gains.push(if slow { gain(turning_power) } else { Vec::new() });
@@ -139,9 +141,8 @@ impl Whitener {
                 *power *= self.noise[channel].power(hz, shapes.at(hz));
             }
             let own = bands.fit(shapes);
-            let of = |line: usize| own.power(line as f64 * step_hz, shapes.line(line));
-            self.gains[channel] =
-                (0..=self.plans.length() / 2).map(of).map(|power| 1.0 / power.max(LEAST_POWER).sqrt()).collect();
+            let powers = own.powers(shapes, self.plans.length() / 2, step_hz);
+            self.gains[channel] = powers.iter().map(|power| 1.0 / power.max(LEAST_POWER).sqrt()).collect();
             self.noise[channel] = own;
         }
         self
@@ -215,10 +216,22 @@ impl Noise {
     fn power(&self, hz: f64, [inputs, in_loop]: [f64; 2]) -> f64 {
         self.white + self.inputs * inputs + self.in_loop * in_loop + self.low * low(hz, self.corner_hz)
     }
+
+    /// At the lines of a transform. Below what was measured it does not fall: which of the shapes the noise has, a few
+    /// lines do not tell, and what does not change would stand out of one of them and not of another.
+    fn powers(&self, shapes: &Shapes, last: usize, step_hz: f64) -> Vec<f64> {
+        let least = self.power(self.from_hz, shapes.at(self.from_hz));
+        let at = |line: usize| {
+            let hz = line as f64 * step_hz;
+            self.power(hz, shapes.line(line)).max(if hz < self.from_hz { least } else { 0.0 })
+        };
+        (0..=last).map(at).collect()
+    }
 }
 
+/// The shape of noise of low frequency; of none without a corner.
 fn low(hz: f64, corner_hz: f64) -> f64 {
-    1.0 / (1.0 + (hz / corner_hz) * (hz / corner_hz))
+    if corner_hz > 0.0 { 1.0 / (1.0 + (hz / corner_hz) * (hz / corner_hz)) } else { 0.0 }
 }
 
 /// What power is taken of.
@@ -248,10 +261,14 @@ impl Bands {
         let least = if of == Of::Most { 0.5 } else { 0.1 };
         let mut segments: Vec<Vec<f64>> = Vec::new();
         for start in (0..=values.len() - length).step_by((length / 2).max(1)) {
-            let sample = |k: usize| if valid[start + k] { values[start + k] * window[k] } else { 0.0 };
-            let gain: f64 = (0..length).filter(|&k| valid[start + k]).map(|k| window[k] * window[k]).sum();
+            let counts = |k: &usize| valid[start + k];
+            let gain: f64 = (0..length).filter(counts).map(|k| window[k] * window[k]).sum();
             let all: f64 = window.iter().map(|value| value * value).sum();
             if gain > least * all {
+                // what does not change is no noise, and would leak into all bands where rows are missing
+                let weight: f64 = (0..length).filter(counts).map(|k| window[k]).sum();
+                let mean = (0..length).filter(counts).map(|k| window[k] * values[start + k]).sum::<f64>() / weight;
+                let sample = |k: usize| if counts(&k) { (values[start + k] - mean) * window[k] } else { 0.0 };
                 segments.push(plans.lines((0..length).map(sample)).iter().map(|line| line.norm_sqr() / gain).collect());
             }
         }
@@ -303,14 +320,15 @@ impl Bands {
 
     /// The shapes that make the measured powers most likely.
     fn fit(&self, shapes: &Shapes) -> Noise {
-        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0 });
+        let from_hz = self.hz.first().copied().unwrap_or(0.0);
+        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0, from_hz });
         if !self.any() {
             return best.1;
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
         let peaks = [peak(0), peak(1)];
-        for corner_hz in CORNERS_HZ {
+        for corner_hz in std::iter::once(0.0).chain(CORNERS_HZ) {
             let basis = |&hz: &f64| {
                 let [inputs, in_loop] = shapes.at(hz);
                 [1.0, inputs / peaks[0], in_loop / peaks[1], low(hz, corner_hz)]
@@ -342,10 +360,11 @@ impl Bands {
                     weight * (model.ln() + measured / model)
                 })
                 .sum();
+            let unlikely = unlikely + if corner_hz > 0.0 { 2.0 * SHOWN_NATS } else { 0.0 };
             if unlikely < best.0 {
                 let [white, inputs, in_loop, low] = share;
-                best =
-                    (unlikely, Noise { white, inputs: inputs / peaks[0], in_loop: in_loop / peaks[1], low, corner_hz });
+                let (inputs, in_loop) = (inputs / peaks[0], in_loop / peaks[1]);
+                best = (unlikely, Noise { white, inputs, in_loop, low, corner_hz, from_hz });
             }
         }
         best.1

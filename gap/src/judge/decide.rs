@@ -295,6 +295,8 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
         {
             decision.verdict = Verdict::Explained;
             decision.unknown_probability = decision.unknown_probability.min(0.05);
+        } else if decision.verdict == Verdict::Unexplained {
+            decision.verdict = Verdict::PartlyExplained;
         }
     };
     if let Some(plateau) = problem.record.plateau_rad {

@@ -1,6 +1,6 @@
 //! An effect by its name and values, put into the physics; values as in the plant's table.
 
-use crate::simulate::{Hysteresis, Physics, Ripple};
+use crate::simulate::{BuildUp, Hysteresis, Physics, Ripple};
 
 /// Adds an effect to the physics. Unknown names change nothing.
 pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
@@ -13,7 +13,11 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
         "presliding" => {
             physics.friction.presliding_rad = v(0);
             // a second value says how it is formulated
-            physics.friction.presliding_settles = v(1) > 0.5;
+            physics.friction.builds_up = match v(1) {
+                way if way > 1.5 => BuildUp::LoadAlone,
+                way if way > 0.5 => BuildUp::OnClamp,
+                _ => BuildUp::InPlaceOfClamp,
+            };
         }
         "load_dependence" => physics.friction.per_g += v(0),
         "direction_asymmetry" => physics.friction.asymmetry += v(0),

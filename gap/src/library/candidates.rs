@@ -66,9 +66,10 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
             grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, MODE_DAMPING]))
         }
         "presliding" => {
-            // in the place of the clamp, and on it
+            // in the place of the clamp, on it, and of the load alone
             let mut settings = [3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along]).to_vec();
             settings.extend([2e-6, 1e-5, 5e-5, 3e-4].map(|along| vec![along, 1.0]));
+            settings.extend([1e-4, 6e-4, 3e-3].map(|along| vec![along, 2.0]));
             secants(effect, &settings)
         }
         "loop_delay" => secants(effect, &[3e-5, 2e-4].map(|delay_s| vec![delay_s])),

@@ -7,8 +7,10 @@ mod quiet;
 mod rough;
 mod stuck;
 
+use std::ops::Range;
+
 use gimbal_log::{Column, Log};
-use gimbal_servo::Config;
+use gimbal_servo::{Config, bearing};
 
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
@@ -39,6 +41,8 @@ pub struct Record {
     pub channels: Vec<Channel>,
     /// Angle of the stop as the pick-off shows it, when it was reached [rad].
     pub plateau_rad: Option<f64>,
+    /// The longest run of rows away from it; none where it was not reached.
+    away_from_stop: Option<Range<usize>>,
     /// Noise of the rate.
     pub rate_noise: RateNoise,
     /// What makes a diagnosis impossible, in words.
@@ -106,6 +110,7 @@ impl Record {
             inputs,
             channels,
             plateau_rad: None,
+            away_from_stop: None,
             rate_noise,
             faults,
             notes,
@@ -132,6 +137,46 @@ impl Record {
     pub fn begin(&self, physics: &Physics, inputs: &Inputs) -> Begin {
         let first = |signal| self.channel(signal).filter(|channel| channel.valid[0]).map(|channel| channel.values[0]);
         Begin::at(physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque))
+    }
+
+    /// The longest run of rows away from the stop as a log of its own, if it is long enough; none where the stop was not
+    /// reached.
+    pub(crate) fn away_from_stop(&self, bearing: &bearing::Config) -> Option<Self> {
+        let rows = self.away_from_stop.clone()?;
+        let period_s = self.inputs.period_s;
+        let [from_s, to_s] = [rows.start, rows.end].map(|row| row as f64 * period_s);
+        if to_s - from_s < SHORTEST_S {
+            return None;
+        }
+        let cut = |values: &[f64]| values.get(rows.clone()).map(<[f64]>::to_vec).unwrap_or_default();
+        let mut inputs = Inputs {
+            period_s,
+            start_s: self.inputs.start_s + from_s,
+            accel_mps2: self.inputs.accel_mps2.each_ref().map(|axis| cut(axis)),
+            rate_radps: cut(&self.inputs.rate_radps),
+            cross_radps: cut(&self.inputs.cross_radps),
+            ..Inputs::default()
+        };
+        inputs.complete(bearing, self.inputs.turned_rad[rows.start]);
+        let channel = |channel: &Channel| Channel {
+            signal: channel.signal,
+            values: cut(&channel.values),
+            valid: channel.valid[rows.clone()].to_vec(),
+        };
+        let mut notes = self.notes.clone();
+        notes.push(format!(
+            "no prediction goes through the stop: {from_s:.1} s to {to_s:.1} s after the first row, away from it, are taken by themselves"
+        ));
+        Some(Self {
+            first_s: self.first_s + from_s,
+            inputs,
+            channels: self.channels.iter().map(channel).collect(),
+            plateau_rad: self.plateau_rad,
+            away_from_stop: None,
+            rate_noise: self.rate_noise.clone(),
+            faults: Vec::new(),
+            notes,
+        })
     }
 
     fn look_at_excitation(&mut self, length_s: f64) {
@@ -170,15 +215,19 @@ impl Record {
             theta.values.iter().map(|value| value.abs() > near).collect()
         };
         let settle = (2.0 / period_s) as usize;
-        let mut wait = 0;
+        let (mut wait, mut from, mut longest) = (0, 0, 0..0);
         for (k, on_stop) in on_stop.iter().enumerate() {
             wait = if *on_stop { settle } else { wait.saturating_sub(1) };
             if wait > 0 {
+                from = k + 1;
                 for channel in &mut self.channels {
                     channel.valid[k] = false;
                 }
+            } else if k + 1 - from > longest.len() {
+                longest = from..k + 1;
             }
         }
+        self.away_from_stop = Some(longest);
         self.notes.push(format!(
             "the float was {} a stop for {:.2} s; masked with 2 s after each",
             if self.plateau_rad.is_some() { "on" } else { "near" },

@@ -6,6 +6,7 @@ use super::chain::{PHI, PHI_RATE};
 use super::inputs::turned;
 use super::lanes::{Lanes, side, within};
 use super::now::Now;
+use super::physics::BuildUp;
 
 const GRAVITY_MPS2: f64 = 9.806_65;
 
@@ -162,16 +163,26 @@ impl<'a, const L: usize> Law<'a, L> {
         crosses.then_some(friction_before + (1.0 - share) * (friction - friction_before))
     }
 
-    /// Dahl's build-up of one lane over the displacement of a step: the share built up, of all in place of the clamp or of
-    /// what the clamp gives at the rate.
-    pub(super) fn build_up(&self, lane: usize, from: [f64; 2], [rate, brake, level, step_s]: [f64; 4]) -> f64 {
+    /// Dahl's build-up of one lane over the displacement of a step, in one of its formulations: w that is left, share built
+    /// up of what builds up, and share of all friction.
+    pub(super) fn build_up(&self, lane: usize, from: [f64; 2], [rate, brake, level, step_s]: [f64; 4]) -> [f64; 3] {
         let [before, zeta_before] = from;
         let friction = &self.physics[lane].friction;
         let (along, slip) = (friction.presliding_rad, self.slip_radps[lane]);
-        let full = |w: f64| if friction.presliding_settles { (w / slip).clamp(-1.0, 1.0) } else { side(w) };
+        let full = |w: f64| if friction.builds_up == BuildUp::OnClamp { (w / slip).clamp(-1.0, 1.0) } else { side(w) };
+        let clamped = if friction.builds_up == BuildUp::LoadAlone {
+            (self.viscous[lane].torque_nm(rate.abs()) * friction.viscous_factor / level.max(1e-30)).min(1.0)
+        } else {
+            0.0
+        };
+        // the clamp of what does not build up is implicit
+        let left = |zeta: f64| {
+            let (w, pull) = (rate - brake * level * (1.0 - clamped) * zeta, brake * level * clamped);
+            if w.abs() > slip + pull { w - pull * w.signum() } else { w / (1.0 + pull / slip) }
+        };
         let mut zeta = zeta_before;
         for _ in 0..3 {
-            let w = rate - brake * level * zeta;
+            let w = left(zeta);
             let leg = |zeta: f64, w: f64, moved: f64| {
                 let full = full(w);
                 full + (zeta - full) * (-moved.abs() / along).exp()
@@ -184,7 +195,8 @@ impl<'a, const L: usize> Law<'a, L> {
                 leg(zeta_before, 0.5 * (before + w), 0.5 * (before + w) * step_s)
             };
         }
-        zeta
+        let w = left(zeta);
+        [w, zeta, (1.0 - clamped) * zeta + clamped * (w / slip).clamp(-1.0, 1.0)]
     }
 
     /// Torques on the gimbal but for the bearings', and what the motor fails to give of its command.

@@ -253,12 +253,13 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let brake = step.end[0][PHI_RATE];
         let rate = to.rate - x[PHI_RATE];
         let level = law.level(to, ahead);
-        let (w, zeta) = if law.presliding {
+        let [w, zeta, share] = if law.presliding {
             self.build_up(state, [rate, brake, level], self.step_s(division))
         } else {
-            law.clamp(rate, brake, level)
+            let (w, share) = law.clamp(rate, brake, level);
+            [w, share, share]
         };
-        let friction = law.built_up(level, w) * zeta;
+        let friction = law.built_up(level, w) * share;
         add(&mut x, &step.end[0], friction);
         if !law.presliding && law.crosses(state.w, w) {
             let mut off = [Lanes::all(0.0); 2];
@@ -283,19 +284,15 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         state.hysteresis = hysteresis;
     }
 
-    /// Dahl's build-up: w that its friction leaves, share built up.
-    fn build_up(
-        &self,
-        state: &Running<N, L>,
-        [rate, brake, level]: [Lanes<L>; 3],
-        step_s: f64,
-    ) -> (Lanes<L>, Lanes<L>) {
-        let mut zeta = state.zeta;
+    /// Dahl's build-up: w that its friction leaves, share built up, share of all friction.
+    fn build_up(&self, state: &Running<N, L>, [rate, brake, level]: [Lanes<L>; 3], step_s: f64) -> [Lanes<L>; 3] {
+        let mut built = [Lanes::all(0.0); 3];
         for lane in 0..L {
             let from = [state.w[lane], state.zeta[lane]];
-            zeta[lane] = self.law.build_up(lane, from, [rate[lane], brake[lane], level[lane], step_s]);
+            let of_lane = self.law.build_up(lane, from, [rate[lane], brake[lane], level[lane], step_s]);
+            built.iter_mut().zip(of_lane).for_each(|(built, value)| built[lane] = value);
         }
-        (rate - brake * level * zeta, zeta)
+        built
     }
 
     #[inline(always)]

@@ -18,5 +18,5 @@ mod running;
 
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
-pub use physics::{Friction, Hysteresis, Measurement, Physics, Ripple};
+pub use physics::{BuildUp, Friction, Hysteresis, Measurement, Physics, Ripple};
 pub use predict::{Begin, Prediction, Variant, predict, predict_each};

@@ -60,10 +60,22 @@ pub struct Friction {
     pub stribeck: Option<[f64; 2]>,
     /// Displacement over which friction builds up [rad].
     pub presliding_rad: f64,
-    /// Whether it settles on the nominal clamp, and not in its place.
-    pub presliding_settles: bool,
+    /// How it does.
+    pub builds_up: BuildUp,
     /// Ratio and time constant [s].
     pub drift: Option<[f64; 2]>,
+}
+
+/// How friction builds up after a reversal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BuildUp {
+    /// All of it, in the place of the clamp.
+    #[default]
+    InPlaceOfClamp,
+    /// All of it, and settles on the clamp.
+    OnClamp,
+    /// The load's friction alone, in the place of its clamp.
+    LoadAlone,
 }
 
 /// Loop of the cable.
@@ -112,7 +124,7 @@ impl Default for Friction {
             quadratic_nm_s2: 0.0,
             stribeck: None,
             presliding_rad: 0.0,
-            presliding_settles: false,
+            builds_up: BuildUp::default(),
             drift: None,
         }
     }

@@ -264,4 +264,26 @@ mod tests {
             assert_eq!(bits(own), bits(&predict(physics, &inputs, &begin, usize::MAX)), "variant {index}");
         }
     }
+
+    #[test]
+    fn closed_form_the_load_that_builds_up_alone_is_all_of_it_or_none() {
+        let inputs = swayed(3000);
+        let base = platform(&gimbal_model_file::ModelFile::default());
+        let begin = Begin::at(&base, &inputs, 0.0, None);
+        let torque_nm = |parts: [f64; 2], values: Option<[f64; 2]>| {
+            let mut physics = base.clone();
+            [physics.friction.load_factor, physics.friction.viscous_factor] = parts;
+            if let Some(values) = values {
+                apply("presliding", &values, &mut physics);
+            }
+            predict(&physics, &inputs, &begin, usize::MAX).motor_torque_nm
+        };
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let (all, alone) = (Some([1e-3, 0.0]), Some([1e-3, 2.0]));
+        // without viscosity there is nothing else, without load nothing builds up
+        assert!(apart(&torque_nm([1.0, 0.0], all), &torque_nm([1.0, 0.0], alone)) < 1e-15);
+        let viscous = torque_nm([0.0, 1.0], alone);
+        let (built_up, clamped) = (torque_nm([0.0, 1.0], all), torque_nm([0.0, 1.0], None));
+        assert!(apart(&viscous, &clamped) < 0.02 * apart(&built_up, &clamped));
+    }
 }
