@@ -19,6 +19,8 @@ pub const DETECTABLE: f64 = 5.0;
 pub const UNSCORED_S: f64 = 1.0;
 /// Share of the record over which it fades in and out before the transform.
 const TAPER: f64 = 0.04;
+/// Values over which the power of a whitened random series is taken.
+const SMOOTH: usize = 64;
 /// Rows of one piece of the noise spectrum.
 const PIECE: usize = 2048;
 
@@ -28,6 +30,8 @@ pub struct Whitener {
     used: Vec<usize>,
     skip: usize,
     length: usize,
+    /// Values of a transform for each row.
+    padding: f64,
     /// One over the noise amplitude by frequency, one list a channel used.
     weights: Vec<Vec<f64>>,
 }
@@ -86,7 +90,7 @@ impl Whitener {
                     .collect()
             })
             .collect();
-        Self { used: used.to_vec(), skip, length, weights }
+        Self { used: used.to_vec(), skip, length, padding: length as f64 / count as f64, weights }
     }
 
     /// The whitened difference of two runs; its norm is d.
@@ -110,6 +114,19 @@ impl Whitener {
             }
         }
         all
+    }
+}
+
+impl Whitener {
+    /// d of a random series: by its power s over that of the noise, `sqrt(sum s^2 / 2)` over all independent values.
+    #[must_use]
+    pub fn power_of(&self, whitened: &[f64]) -> f64 {
+        let block = |values: &[f64]| {
+            let squares: f64 = values.iter().map(|value| value * value).sum();
+            // a mean of n squares, squared, is more than the square of what it stands for
+            squares * squares / (values.len() as f64 + 2.0)
+        };
+        (0.5 * self.padding * whitened.chunks(SMOOTH).map(block).sum::<f64>()).sqrt()
     }
 }
 
@@ -190,5 +207,24 @@ impl<'a> Projection<'a> {
             }
         }
         left.max(0.0).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draw::Draw;
+
+    #[test]
+    fn white_noise_of_some_power_stands_out_by_it_and_by_the_root_of_half_the_rows() {
+        let mut draw = Draw::new(&Draw::seed_of(5), 0);
+        // rows that are no power of two: the transform is padded
+        let mut series =
+            |rms: f64| -> Outputs { core::array::from_fn(|_| (0..11_000).map(|_| rms * draw.normal()).collect()) };
+        let (noise, random, none) = (series(1.0), series(0.3), series(0.0));
+        let whitener = Whitener::new(&noise, &[0], 1e-3);
+        let d = whitener.power_of(&whitener.difference(&random, &none));
+        let expected = 0.3 * 0.3 * (0.5_f64 * 10_000.0).sqrt();
+        assert!((d / expected - 1.0).abs() < 0.1, "{d} {expected}");
     }
 }

@@ -3,7 +3,7 @@
 use gimbal_servo::Config;
 
 use super::drift::Drift;
-use super::sizing::{Bench, QUANTISATION, STEPS};
+use super::sizing::{Bench, STEPS};
 use super::text::{self, Column};
 use super::{Answer, AnswerEffect, Case, Kind, Recipe, SignalGap, log_name};
 use crate::detect::{DETECTABLE, UNSCORED_S};
@@ -228,7 +228,8 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                 .collect();
             let mut all: Vec<&[f64]> = among.iter().map(|(_, column)| &column[..]).collect();
             all.extend(&beside);
-            let of = |d: f64| if effect.name == QUANTISATION { bench.step_stands_out(*size) } else { d };
+            let by_power = bench.by_power(effect, *size);
+            let of = |d: f64| by_power.unwrap_or(d);
             AnswerEffect {
                 name: effect.name.to_owned(),
                 block: crate::effects::block_of(effect.name).to_owned(),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use gimbal_servo::Config;
+use gimbal_servo::servo;
 use serde::{Deserialize, Serialize};
 
 use crate::draw::Draw;
@@ -17,9 +18,9 @@ pub(super) const FRICTION_LEVEL: f64 = 0.15;
 /// Largest turn of an accelerometer [rad].
 const MISALIGNMENT_RAD: f64 = 5e-4;
 
-/// Nominal parameters that drift, by the effect that a shift beyond tolerance is; the unbalance has two components,
-/// and a turn of the accelerometers about z comes beside.
-pub(super) const NAMES: [&str; 12] = [
+/// Nominal parameters that drift, by the effect that a shift beyond tolerance is, where it is one; the unbalance has two
+/// components, and turns of the accelerometers come beside.
+pub(super) const NAMES: [&str; 23] = [
     "friction_level",
     "viscous_friction",
     "loop_gain",
@@ -32,10 +33,26 @@ pub(super) const NAMES: [&str; 12] = [
     "torque_scale",
     "mass_unbalance",
     "mass_unbalance_y",
+    "float_inertia",
+    "slip_rate",
+    "T1",
+    "T2",
+    "T3",
+    "T4",
+    "T5",
+    "T6",
+    "T7",
+    "T8",
+    "T9",
 ];
 
-/// Name of the turn of the accelerometers.
-pub(super) const TURN: &str = "accelerometer_turn";
+/// Names of the turns of the accelerometers about x, y, z.
+pub(super) const TURNS: [&str; 3] = ["accelerometers_about_x", "accelerometers_about_y", "accelerometers_about_z"];
+
+/// Which axis the accelerometers are turned about.
+fn turn(name: &str) -> Option<usize> {
+    TURNS.iter().position(|own| *own == name)
+}
 
 /// Relative drift by name, and the turns of the accelerometers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -50,7 +67,7 @@ pub struct Drift {
 pub(super) fn tolerance(name: &str) -> f64 {
     match name {
         "friction_level" => FRICTION_LEVEL,
-        TURN => MISALIGNMENT_RAD,
+        name if turn(name).is_some() => MISALIGNMENT_RAD,
         _ => DEFAULT,
     }
 }
@@ -71,7 +88,10 @@ impl Drift {
     }
 
     pub(super) fn of(&self, name: &str) -> f64 {
-        if name == TURN { self.misalignment_rad[2] } else { self.relative.get(name).copied().unwrap_or(0.0) }
+        match turn(name) {
+            Some(axis) => self.misalignment_rad[axis],
+            None => self.relative.get(name).copied().unwrap_or(0.0),
+        }
     }
 
     /// The drifted world of a nominal configuration.
@@ -104,7 +124,24 @@ pub(super) fn shift(world: &mut World, nominal: &Config, name: &str, change: f64
         }
         "pickoff_scale" => sensors.pickoff_scale += change,
         "torque_scale" => sensors.torque_scale += change,
-        TURN => sensors.misalignment_rad[2] += change,
-        _ => {}
+        "float_inertia" => truth.config.gyro.float_inertia_kg_m2 += change * nominal.gyro.float_inertia_kg_m2,
+        "slip_rate" => truth.config.bearing.slip_rate_radps += change * nominal.bearing.slip_rate_radps,
+        name => {
+            if let Some(axis) = turn(name) {
+                sensors.misalignment_rad[axis] += change;
+            }
+            if let Some((own, nominal)) = time_constant(&mut truth.config.servo, &nominal.servo, name) {
+                *own += change * nominal;
+            }
+        }
     }
+}
+
+/// A time constant of the compensator, and what it is nominally.
+fn time_constant<'a>(servo: &'a mut servo::Config, nominal: &servo::Config, name: &str) -> Option<(&'a mut f64, f64)> {
+    let leads = ["T1", "T2", "T3", "T4", "T5"].into_iter().zip(&mut servo.lead_time_constants_s);
+    let lags = ["T6", "T7", "T8", "T9"].into_iter().zip(&mut servo.lag_time_constants_s);
+    let nominal = nominal.lead_time_constants_s.iter().chain(&nominal.lag_time_constants_s);
+    let own = leads.chain(lags).zip(nominal).find(|((own, _), _)| *own == name);
+    own.map(|((_, value), nominal)| (value, *nominal))
 }

@@ -2,7 +2,7 @@
 
 use gimbal_servo::Config;
 
-use super::drift::{self, Drift, NAMES, TURN};
+use super::drift::{self, Drift, NAMES, TURNS};
 use crate::detect::{DETECTABLE, Nuisance, Projection, Whitener};
 use crate::draw::Draw;
 use crate::effects::{Effect, Scale, World, block_of, library_names};
@@ -13,8 +13,9 @@ use crate::track::Track;
 
 /// Integration steps between rows where only differences count: 4 kHz.
 pub(super) const STEPS: usize = 4;
-/// The effect that is no shape in time.
-pub(super) const QUANTISATION: &str = "pickoff_quantisation";
+/// Effects that are no shape in time.
+const QUANTISATION: &str = "pickoff_quantisation";
+const RANDOM_TORQUE: &str = "coloured_torque";
 /// Share of a tolerance over which a sensitivity is taken.
 const SENSITIVITY_SHARE: f64 = 0.3;
 
@@ -88,7 +89,7 @@ impl<'a> Bench<'a> {
             pickoff_rad: noise.gyro_angle_rad,
         };
         bench.logged = Some(Scene::outputs(base, &run(base, &base.sensors.logged(&scene.track))));
-        for name in NAMES.into_iter().chain([TURN]) {
+        for name in NAMES.into_iter().chain(TURNS) {
             // a stop that is never touched has no sensitivity
             if name == "stop_angle" && !bench.samples.iter().any(|sample| sample.on_stop) {
                 continue;
@@ -109,13 +110,13 @@ impl<'a> Bench<'a> {
 
     /// What a world shows against its own logged inputs, as far as the undisturbed plant does not show it too.
     fn seen(&self, world: &World) -> Outputs {
+        let turned = |world: &World| world.sensors.misalignment_rad.map(f64::to_bits);
         let samples = self.scene.run_with(&world.truth, &self.scene.track, self.steps, Some(&self.loads));
         let shown = Scene::outputs(world, &samples);
         match &self.logged {
             Some(logged)
                 if world.sensors.skew_s.to_bits() != self.base.sensors.skew_s.to_bits()
-                    || world.sensors.misalignment_rad[2].to_bits()
-                        != self.base.sensors.misalignment_rad[2].to_bits() =>
+                    || turned(world) != turned(self.base) =>
             {
                 let track = world.sensors.logged(&self.scene.track);
                 let other = Scene::outputs(self.base, &self.scene.run(&self.base.truth, &track, self.steps));
@@ -172,16 +173,23 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// How far the power of a quantised pick-off's steps stands out of its noise: where each row is rounded to nobody
-    /// knows, unless the angle were known to a fraction of a step, so the difference itself tells nothing.
-    pub(super) fn step_stands_out(&self, step_rad: f64) -> f64 {
-        let rows = self.outputs[0].len() as f64;
-        step_rad * step_rad / (12.0 * self.pickoff_rad * self.pickoff_rad) * (0.5 * rows).sqrt()
+    /// d of what is no shape in time: how far its power stands out of the noise. Where a quantised pick-off is rounded to
+    /// nobody knows, unless the angle were known to a fraction of a step, and nobody knows the course of a random torque:
+    /// the difference itself tells nothing.
+    pub(super) fn by_power(&self, effect: &Effect, size: f64) -> Option<f64> {
+        match effect.name {
+            QUANTISATION => {
+                let rows = self.outputs[0].len() as f64;
+                Some(size * size / (12.0 * self.pickoff_rad * self.pickoff_rad) * (0.5 * rows).sqrt())
+            }
+            RANDOM_TORQUE => Some(self.whitener.power_of(&self.difference(&self.world(effect, size)))),
+            _ => None,
+        }
     }
 
     fn d_of(&self, effect: &Effect, size: f64, projection: &Projection<'_>) -> f64 {
-        if effect.name == QUANTISATION {
-            return self.step_stands_out(size);
+        if let Some(d) = self.by_power(effect, size) {
+            return d;
         }
         let left = projection.left_of(&self.change(effect, size));
         if left.is_finite() { left } else { f64::INFINITY }
