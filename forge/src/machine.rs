@@ -411,12 +411,9 @@ impl<'a> Machine<'a> {
         let path = self.path(states, stage, stage.since_commit_s);
         let rate = stage.row.rate_radps - states[PHI_RATE];
         let [x, y, _] = stage.row.accel_mps2;
-        let mut level = stage.load_nm * (1.0 + friction.load_change)
-            + self.palmgren.viscous_nm(rate) * (1.0 + friction.viscous_change);
-        if friction.load_per_g != 0.0 {
-            let radial_g = libm::sqrt(x * x + y * y) / gimbal_servo::paper::STANDARD_GRAVITY_MPS2;
-            level += stage.load_nm * friction.load_per_g * radial_g;
-        }
+        let radial_g = libm::sqrt(x * x + y * y) / gimbal_servo::paper::STANDARD_GRAVITY_MPS2;
+        let load_nm = stage.load_nm * (1.0 + friction.load_change) * (1.0 + friction.load_per_g * radial_g);
+        let mut level = load_nm + self.palmgren.viscous_nm(rate) * (1.0 + friction.viscous_change);
         if let Some([excess, width, exponent]) = friction.stribeck {
             let over = rate.abs() / width;
             level += excess * libm::exp(-libm::exp(exponent * libm::log(over.max(1e-9))));

@@ -237,8 +237,8 @@ fn finish(hypothesis: &Hypothesis, point: Point, outcome: Outcome, last: Option<
                 if let Some(nuisance) = problem.nuisances.iter().position(|nuisance| nuisance.name == *release) {
                     let own = &problem.nuisances[nuisance];
                     let sigma = sigma(problem.columns.begin + nuisance);
-                    values[effect][place] = own.change(shifts[nuisance]);
-                    errors[effect][place] = own.change(shifts[nuisance] + sigma) - values[effect][place];
+                    values[effect][place] = own.change(&problem.base, shifts[nuisance]);
+                    errors[effect][place] = own.change(&problem.base, shifts[nuisance] + sigma) - values[effect][place];
                 }
             }
         }

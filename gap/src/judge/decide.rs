@@ -302,7 +302,9 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
     if let Some(plateau) = problem.record.plateau_rad {
         let change = plateau / (problem.stop_rad * pickoff) - 1.0;
         if change.abs() > BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale) {
-            add("stop_angle", change, problem.noise[0] / problem.stop_rad, 0.95);
+            // the pick-off that shows it has a scale of its own
+            let scale = problem.nuisances.iter().find(|own| own.name == "pickoff_scale").map_or(0.0, |own| own.sigma);
+            add("stop_angle", change, (1.0 + change) * scale.hypot(problem.noise[0] / plateau), 0.95);
         }
     }
     if let Some(theta) = problem.record.channel(Signal::GyroAngle)

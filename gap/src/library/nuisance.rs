@@ -26,6 +26,7 @@ pub struct Nuisance {
     /// Step of the finite difference.
     pub step: f64,
     shift: fn(&mut Physics, f64),
+    value: fn(&Physics) -> f64,
     /// Whether a shift is added; others are logarithms of a ratio, so that scales of all torques together are a line.
     pub absolute: bool,
 }
@@ -50,10 +51,13 @@ impl Nuisance {
         (flat * shift + steep * beyond, flat + steep, flat * shift * shift + steep * beyond * beyond)
     }
 
-    /// The change that a shift stands for: relative but for those that are added.
+    /// The change of the parameter that a shift stands for: relative but for those that are added.
     #[must_use]
-    pub fn change(&self, shift: f64) -> f64 {
-        if self.absolute { shift } else { shift.exp_m1() }
+    pub fn change(&self, nominal: &Physics, shift: f64) -> f64 {
+        let mut moved = nominal.clone();
+        self.shift(&mut moved, shift);
+        let [nominal, moved] = [nominal, &moved].map(self.value);
+        if self.absolute { moved - nominal } else { moved / nominal - 1.0 }
     }
 
     /// Moves the parameter.
@@ -62,9 +66,18 @@ impl Nuisance {
     }
 }
 
-/// Adds to a value, in its logarithm where there is one.
+/// Up to this share of a value something is added to its logarithm.
+const LOGARITHM: f64 = 0.5;
+
+/// Adds to a value: in its logarithm where there is one, on in a line from there.
 fn stretch(value: &mut f64, by: f64) {
-    if by.abs() < 0.5 * value.abs() { *value *= (by / *value).exp() } else { *value += by }
+    let share = by / *value;
+    if !share.is_finite() {
+        *value += by;
+        return;
+    }
+    let near = share.clamp(-LOGARITHM, LOGARITHM);
+    *value = *value * near.exp() + (by - near * *value);
 }
 
 macro_rules! relative {
@@ -75,6 +88,7 @@ macro_rules! relative {
             tolerance: $tolerance,
             step: STEP * $tolerance,
             shift: |$physics: &mut Physics, by: f64| $field *= by.exp(),
+            value: |$physics: &Physics| $field,
             absolute: false,
         }
     };
@@ -86,26 +100,48 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
     let default = tolerance.default_relative;
     let unbalance = &physics.config.unbalance;
     let size = unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6);
-    let added = |name, tolerance: f64, shift| Nuisance {
+    let added = |name, tolerance: f64, shift, value| Nuisance {
         name,
         sigma: UNIFORM * tolerance,
         tolerance,
         step: STEP * tolerance,
         shift,
+        value,
         absolute: true,
     };
     vec![
         relative!(tolerance.friction_level, "friction_level", p => p.friction.load_factor),
         relative!(tolerance.viscous_friction, "bearing viscosity", p => p.friction.viscous_factor),
-        added("unbalance x", tolerance.mass_unbalance * size, |physics, by| {
-            stretch(&mut physics.config.unbalance.x_kg_m, by);
-        }),
-        added("unbalance y", tolerance.mass_unbalance * size, |physics, by| {
-            stretch(&mut physics.config.unbalance.y_kg_m, by);
-        }),
-        added("accelerometers about x", ALIGNMENT_RAD, |physics, by| physics.turned_rad[0] += by),
-        added("accelerometers about y", ALIGNMENT_RAD, |physics, by| physics.turned_rad[1] += by),
-        added("accelerometers about z", ALIGNMENT_RAD, |physics, by| physics.turned_rad[2] += by),
+        added(
+            "unbalance x",
+            tolerance.mass_unbalance * size,
+            |physics, by| stretch(&mut physics.config.unbalance.x_kg_m, by),
+            |physics| physics.config.unbalance.x_kg_m,
+        ),
+        added(
+            "unbalance y",
+            tolerance.mass_unbalance * size,
+            |physics, by| stretch(&mut physics.config.unbalance.y_kg_m, by),
+            |physics| physics.config.unbalance.y_kg_m,
+        ),
+        added(
+            "accelerometers about x",
+            ALIGNMENT_RAD,
+            |physics, by| physics.turned_rad[0] += by,
+            |physics| physics.turned_rad[0],
+        ),
+        added(
+            "accelerometers about y",
+            ALIGNMENT_RAD,
+            |physics, by| physics.turned_rad[1] += by,
+            |physics| physics.turned_rad[1],
+        ),
+        added(
+            "accelerometers about z",
+            ALIGNMENT_RAD,
+            |physics, by| physics.turned_rad[2] += by,
+            |physics| physics.turned_rad[2],
+        ),
         relative!(tolerance.loop_gain, "loop_gain", p => p.config.servo.gain_nm_per_rad_s),
         relative!(tolerance.motor_lag, "motor_lag", p => p.config.servo.motor_lag_s),
         relative!(tolerance.gyro_damping, "gyro_damping", p => p.config.gyro.damping_nm_s_per_rad),
@@ -132,6 +168,7 @@ mod tests {
     use gimbal_model_file::{ModelFile, Tolerance};
 
     use super::nuisances;
+    use crate::library::platform;
 
     #[test]
     #[allow(clippy::float_cmp, reason = "tolerances are copied")]
@@ -146,5 +183,21 @@ mod tests {
             assert_eq!(of(&format!("accelerometers about {axis}")), 1e-3);
         }
         assert_eq!((of("loop_gain"), of("friction_level")), (0.03, 0.15));
+    }
+
+    #[test]
+    fn closed_form_a_shift_stands_for_the_change_that_it_makes() {
+        let physics = platform(&ModelFile::default());
+        let all = nuisances(&Tolerance::default(), &physics);
+        let change = |name: &str, shift: f64| {
+            all.iter().find(|own| own.name == name).map(|own| own.change(&physics, shift)).expect("a parameter")
+        };
+        let x_kg_m = physics.config.unbalance.x_kg_m;
+        assert!((change("unbalance x", -0.3 * x_kg_m) / x_kg_m - (-0.3_f64).exp_m1()).abs() < 1e-12);
+        assert!((change("unbalance y", 1e-5) - 1e-5).abs() < 1e-18);
+        assert!((change("loop_gain", 0.2) - 0.2_f64.exp_m1()).abs() < 1e-12);
+        // no step where the logarithm ends
+        let [below, above] = [0.499_999, 0.500_001].map(|share| change("unbalance x", share * x_kg_m));
+        assert!((above - below).abs() < 1e-5 * x_kg_m);
     }
 }
