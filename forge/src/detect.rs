@@ -115,9 +115,7 @@ impl Whitener {
         }
         all
     }
-}
 
-impl Whitener {
     /// d of a random series: by its power s over that of the noise, `sqrt(sum s^2 / 2)` over all independent values.
     #[must_use]
     pub fn power_of(&self, whitened: &[f64]) -> f64 {

@@ -204,7 +204,7 @@ fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
     }
     let mut found = search_from(&mut problem, nominal);
     for more in (0..AGAIN).rev() {
-        let best = found.fits.iter().fold(&found.null, |best, fit| if fit.square < best.square { fit } else { best });
+        let best = found.closest();
         if !quiet(&problem, best) {
             break;
         }
@@ -222,8 +222,7 @@ fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
 
 /// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.
 fn astray((problem, search): &(Problem, Search)) -> bool {
-    let least = search.fits.iter().map(|fit| fit.square).fold(search.null.square, f64::min);
-    least > ASTRAY * problem.whitener.count() as f64
+    search.closest().square > ASTRAY * problem.whitener.count() as f64
 }
 
 /// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::hypothesis::{Hypothesis, Point};
+use super::hypothesis::{Point, left};
 use super::refine::Effort;
 use super::{Fit, Problem, Set, refine};
 
@@ -44,15 +44,13 @@ pub(crate) fn gross(problem: &Problem, null: &Fit) -> Vec<Fit> {
 /// The change of a candidate's parameter that leaves least, all else nominal.
 fn best(problem: &Problem, candidate: usize) -> Option<Start> {
     let [release] = problem.candidates[candidate].releases else { return None };
-    let place = problem.nuisances.iter().position(|own| own.name == *release && !own.absolute)?;
+    let place = problem.nuisance(release).filter(|&place| !problem.nuisances[place].absolute)?;
     let set = Set(vec![candidate]);
-    let values = vec![vec![0.0]];
-    let hypothesis = Hypothesis::new(problem, &set, &values);
     let start = |change: f64| {
         let shift = change.ln_1p();
-        let mut point = Point::nominal(problem, values.clone());
+        let mut point = Point::nominal(problem, vec![vec![0.0]]);
         point.shifts[place] = shift;
-        Start { candidate, place, shift, square: hypothesis.evaluate(&point).square }
+        Start { candidate, place, shift, square: left(problem, &set, &point) }
     };
     CHANGES.map(start).into_iter().filter(|start| start.square.is_finite()).min_by(|a, b| a.square.total_cmp(&b.square))
 }

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::hypothesis::{Hypothesis, Point};
+use super::hypothesis::{Point, left};
 use super::refine::Effort;
 use super::{Fit, Problem, Set, refine};
 use crate::library::MODE_DAMPING;
@@ -27,7 +27,7 @@ pub(crate) fn heavy(problem: &Problem, null: &Fit) -> Option<Fit> {
     let tries: Vec<Vec<Vec<f64>>> = frequencies.map(|hz| vec![vec![SHARE, hz, MODE_DAMPING]]).collect();
     let tried = |values: Vec<Vec<f64>>| {
         let point = Point { values, ..null.point(problem) };
-        (Hypothesis::new(problem, &set, &point.values).evaluate(&point).square, point.values)
+        (left(problem, &set, &point), point.values)
     };
     let (square, values) = tries.into_par_iter().map(tried).min_by(|a, b| a.0.total_cmp(&b.0))?;
     (square < null.square).then(|| refine(problem, &set, &values, Some(null), Effort::Thorough))

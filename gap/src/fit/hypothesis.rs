@@ -31,6 +31,11 @@ impl Point {
     }
 }
 
+/// Square that a set of candidates leaves at a point, without a fit.
+pub(crate) fn left(problem: &Problem, set: &Set, point: &Point) -> f64 {
+    Hypothesis::new(problem, set, &point.values).evaluate(point).square
+}
+
 /// What a try predicts.
 #[derive(Debug)]
 pub(crate) struct Outcome {

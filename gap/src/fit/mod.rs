@@ -9,6 +9,7 @@ mod linear;
 mod normal;
 mod path;
 mod plans;
+mod power;
 mod problem;
 mod pull;
 mod refine;

@@ -142,6 +142,11 @@ impl<'a> Problem<'a> {
         self.gram.columns_mut(0, fixed).copy_from(&fresh.transpose());
     }
 
+    /// Place of a nominal parameter.
+    pub(crate) fn nuisance(&self, name: &str) -> Option<usize> {
+        self.nuisances.iter().position(|nuisance| nuisance.name == name)
+    }
+
     /// Columns and prior precisions of a set of candidates.
     #[must_use]
     pub fn chosen(&self, set: &[usize]) -> (Vec<usize>, Vec<f64>) {
@@ -151,7 +156,7 @@ impl<'a> Problem<'a> {
         for &index in set {
             let candidate = &self.candidates[index];
             for (release, prior) in candidate.releases.iter().zip(&candidate.prior) {
-                if let Some(place) = self.nuisances.iter().position(|nuisance| nuisance.name == *release) {
+                if let Some(place) = self.nuisance(release) {
                     let place = self.columns.begin + place;
                     sigma[place] = sigma[place].max(prior.1);
                 }

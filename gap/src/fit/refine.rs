@@ -234,7 +234,7 @@ fn finish(hypothesis: &Hypothesis, point: Point, outcome: Outcome, last: Option<
         }
         for (effect, &index) in set.0.iter().enumerate() {
             for (place, release) in problem.candidates[index].releases.iter().enumerate() {
-                if let Some(nuisance) = problem.nuisances.iter().position(|nuisance| nuisance.name == *release) {
+                if let Some(nuisance) = problem.nuisance(release) {
                     let own = &problem.nuisances[nuisance];
                     let sigma = sigma(problem.columns.begin + nuisance);
                     values[effect][place] = own.change(&problem.base, shifts[nuisance]);

@@ -60,7 +60,7 @@ pub fn without(problem: &Problem, fit: &Fit, place: usize) -> Vec<f64> {
     let index = set.0.remove(place);
     point.values.remove(place);
     for release in problem.candidates[index].releases {
-        if let Some(nuisance) = problem.nuisances.iter().position(|nuisance| nuisance.name == *release) {
+        if let Some(nuisance) = problem.nuisance(release) {
             point.shifts[nuisance] = 0.0;
         }
     }

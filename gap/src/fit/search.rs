@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::gross::gross;
 use super::heavy::heavy;
-use super::hypothesis::{Hypothesis, Point};
+use super::hypothesis::{Point, left};
 use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::refine::Effort;
@@ -26,6 +26,14 @@ pub struct Search {
     pub fits: Vec<Fit>,
     /// Every effect by itself beside the nominal parameters, by the linear equations there, the best first.
     pub glimpses: Vec<Glimpse>,
+}
+
+impl Search {
+    /// The fit that leaves least.
+    #[must_use]
+    pub fn closest(&self) -> &Fit {
+        self.fits.iter().fold(&self.null, |best, fit| if fit.square < best.square { fit } else { best })
+    }
 }
 
 /// What an effect would add to the nominal parameters, without a fit.
@@ -314,7 +322,7 @@ fn setting(problem: &Problem, from: &Fit, effect: &str) -> Option<(usize, Vec<f6
         let own = candidate.probes[0].0.clone();
         let (set, values) = extended(from, index, own.clone());
         let point = Point { values, ..from.point(problem) };
-        (Hypothesis::new(problem, &set, &point.values).evaluate(&point).square, (index, own))
+        (left(problem, &set, &point), (index, own))
     };
     let all = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
     all.map(tried).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, best)| best)

@@ -33,7 +33,7 @@ pub fn correlations(problem: &Problem, fit: &Fit) -> Vec<Correlation> {
     for (place, &index) in fit.set.0.iter().enumerate() {
         let candidate = &problem.candidates[index];
         for release in candidate.releases {
-            own.extend(problem.nuisances.iter().position(|nuisance| nuisance.name == *release).map(|at| begin + at));
+            own.extend(problem.nuisance(release).map(|at| begin + at));
         }
         let Some(entry) = Effect::from_name(candidate.effect).filter(|_| candidate.releases.is_empty()) else {
             continue;

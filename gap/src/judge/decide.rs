@@ -303,7 +303,7 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
         let change = plateau / (problem.stop_rad * pickoff) - 1.0;
         if change.abs() > BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale) {
             // the pick-off that shows it has a scale of its own
-            let scale = problem.nuisances.iter().find(|own| own.name == "pickoff_scale").map_or(0.0, |own| own.sigma);
+            let scale = problem.nuisance("pickoff_scale").map_or(0.0, |place| problem.nuisances[place].sigma);
             add("stop_angle", change, (1.0 + change) * scale.hypot(problem.noise[0] / plateau), 0.95);
         }
     }

@@ -79,7 +79,7 @@ fn smallest(problem: &Problem, effect: Effect, tolerance: &Tolerance) -> Option<
     let sizes = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect.name());
     let sizes = sizes.filter_map(|(index, candidate)| {
         if let Some(release) = candidate.releases.first() {
-            let place = problem.nuisances.iter().position(|nuisance| nuisance.name == *release)?;
+            let place = problem.nuisance(release)?;
             let sigma = error(problem, index, Some(problem.columns.begin + place))?;
             let scale = if effect.name() == "mass_unbalance" {
                 problem.nuisances[place].sigma / tolerance.of(effect.name())

@@ -46,7 +46,7 @@ pub(crate) struct Weighed {
 
 /// Every set that was fitted, in their order, then every effect that was only glimpsed.
 pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Vec<Weighed> {
-    let closest = search.fits.iter().fold(&search.null, |best, fit| if fit.square < best.square { fit } else { best });
+    let closest = search.closest();
     let temper = problem.formulation(closest);
     let mut all: Vec<Weighed> = search
         .fits

@@ -25,8 +25,7 @@ pub struct Nuisance {
     pub tolerance: f64,
     /// Step of the finite difference.
     pub step: f64,
-    shift: fn(&mut Physics, f64),
-    value: fn(&Physics) -> f64,
+    field: fn(&mut Physics) -> &mut f64,
     /// Whether a shift is added; others are logarithms of a ratio, so that scales of all torques together are a line.
     pub absolute: bool,
 }
@@ -54,15 +53,17 @@ impl Nuisance {
     /// The change of the parameter that a shift stands for: relative but for those that are added.
     #[must_use]
     pub fn change(&self, nominal: &Physics, shift: f64) -> f64 {
-        let mut moved = nominal.clone();
-        self.shift(&mut moved, shift);
-        let [nominal, moved] = [nominal, &moved].map(self.value);
+        let mut physics = nominal.clone();
+        let nominal = *(self.field)(&mut physics);
+        self.shift(&mut physics, shift);
+        let moved = *(self.field)(&mut physics);
         if self.absolute { moved - nominal } else { moved / nominal - 1.0 }
     }
 
     /// Moves the parameter.
     pub fn shift(&self, physics: &mut Physics, by: f64) {
-        (self.shift)(physics, by);
+        let value = (self.field)(physics);
+        if self.absolute { stretch(value, by) } else { *value *= by.exp() }
     }
 }
 
@@ -80,86 +81,48 @@ fn stretch(value: &mut f64, by: f64) {
     *value = *value * near.exp() + (by - near * *value);
 }
 
-macro_rules! relative {
-    ($tolerance:expr, $name:literal, $physics:ident => $field:expr) => {
-        Nuisance {
-            name: $name,
-            sigma: UNIFORM * $tolerance,
-            tolerance: $tolerance,
-            step: STEP * $tolerance,
-            shift: |$physics: &mut Physics, by: f64| $field *= by.exp(),
-            value: |$physics: &Physics| $field,
-            absolute: false,
-        }
-    };
-}
-
 /// Every nominal parameter of the platform.
 #[must_use]
 pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
     let default = tolerance.default_relative;
     let unbalance = &physics.config.unbalance;
     let size = unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6);
-    let added = |name, tolerance: f64, shift, value| Nuisance {
+    let of = |tolerance: f64, name, absolute, field| Nuisance {
         name,
         sigma: UNIFORM * tolerance,
         tolerance,
         step: STEP * tolerance,
-        shift,
-        value,
-        absolute: true,
+        field,
+        absolute,
     };
+    let relative = |tolerance, name, field| of(tolerance, name, false, field);
+    let added = |tolerance, name, field| of(tolerance, name, true, field);
     vec![
-        relative!(tolerance.friction_level, "friction_level", p => p.friction.load_factor),
-        relative!(tolerance.viscous_friction, "bearing viscosity", p => p.friction.viscous_factor),
-        added(
-            "unbalance x",
-            tolerance.mass_unbalance * size,
-            |physics, by| stretch(&mut physics.config.unbalance.x_kg_m, by),
-            |physics| physics.config.unbalance.x_kg_m,
-        ),
-        added(
-            "unbalance y",
-            tolerance.mass_unbalance * size,
-            |physics, by| stretch(&mut physics.config.unbalance.y_kg_m, by),
-            |physics| physics.config.unbalance.y_kg_m,
-        ),
-        added(
-            "accelerometers about x",
-            ALIGNMENT_RAD,
-            |physics, by| physics.turned_rad[0] += by,
-            |physics| physics.turned_rad[0],
-        ),
-        added(
-            "accelerometers about y",
-            ALIGNMENT_RAD,
-            |physics, by| physics.turned_rad[1] += by,
-            |physics| physics.turned_rad[1],
-        ),
-        added(
-            "accelerometers about z",
-            ALIGNMENT_RAD,
-            |physics, by| physics.turned_rad[2] += by,
-            |physics| physics.turned_rad[2],
-        ),
-        relative!(tolerance.loop_gain, "loop_gain", p => p.config.servo.gain_nm_per_rad_s),
-        relative!(tolerance.motor_lag, "motor_lag", p => p.config.servo.motor_lag_s),
-        relative!(tolerance.gyro_damping, "gyro_damping", p => p.config.gyro.damping_nm_s_per_rad),
-        relative!(tolerance.angular_momentum, "angular_momentum", p => p.config.gyro.angular_momentum_nm_s),
-        relative!(tolerance.gimbal_inertia, "gimbal_inertia", p => p.config.servo.gimbal_inertia_kg_m2),
-        relative!(default, "float inertia", p => p.config.gyro.float_inertia_kg_m2),
-        relative!(default, "slip rate", p => p.config.bearing.slip_rate_radps),
-        relative!(default, "T1", p => p.config.servo.lead_time_constants_s[0]),
-        relative!(default, "T2", p => p.config.servo.lead_time_constants_s[1]),
-        relative!(default, "T3", p => p.config.servo.lead_time_constants_s[2]),
-        relative!(default, "T4", p => p.config.servo.lead_time_constants_s[3]),
-        relative!(default, "T5", p => p.config.servo.lead_time_constants_s[4]),
-        relative!(default, "T6", p => p.config.servo.lag_time_constants_s[0]),
-        relative!(default, "T7", p => p.config.servo.lag_time_constants_s[1]),
-        relative!(default, "T8", p => p.config.servo.lag_time_constants_s[2]),
-        relative!(default, "T9", p => p.config.servo.lag_time_constants_s[3]),
-        relative!(tolerance.pickoff_scale, "pickoff_scale", p => p.measurement.pickoff_factor),
-        relative!(tolerance.torque_scale, "torque_scale", p => p.measurement.torque_factor),
+        relative(tolerance.friction_level, "friction_level", |p| &mut p.friction.load_factor),
+        relative(tolerance.viscous_friction, "bearing viscosity", |p| &mut p.friction.viscous_factor),
+        added(tolerance.mass_unbalance * size, "unbalance x", |p| &mut p.config.unbalance.x_kg_m),
+        added(tolerance.mass_unbalance * size, "unbalance y", |p| &mut p.config.unbalance.y_kg_m),
+        added(ALIGNMENT_RAD, "accelerometers about x", |p| &mut p.turned_rad[0]),
+        added(ALIGNMENT_RAD, "accelerometers about y", |p| &mut p.turned_rad[1]),
+        added(ALIGNMENT_RAD, "accelerometers about z", |p| &mut p.turned_rad[2]),
+        relative(tolerance.loop_gain, "loop_gain", |p| &mut p.config.servo.gain_nm_per_rad_s),
+        relative(tolerance.motor_lag, "motor_lag", |p| &mut p.config.servo.motor_lag_s),
+        relative(tolerance.gyro_damping, "gyro_damping", |p| &mut p.config.gyro.damping_nm_s_per_rad),
+        relative(tolerance.angular_momentum, "angular_momentum", |p| &mut p.config.gyro.angular_momentum_nm_s),
+        relative(tolerance.gimbal_inertia, "gimbal_inertia", |p| &mut p.config.servo.gimbal_inertia_kg_m2),
+        relative(default, "float inertia", |p| &mut p.config.gyro.float_inertia_kg_m2),
+        relative(default, "slip rate", |p| &mut p.config.bearing.slip_rate_radps),
+        relative(default, "T1", |p| &mut p.config.servo.lead_time_constants_s[0]),
+        relative(default, "T2", |p| &mut p.config.servo.lead_time_constants_s[1]),
+        relative(default, "T3", |p| &mut p.config.servo.lead_time_constants_s[2]),
+        relative(default, "T4", |p| &mut p.config.servo.lead_time_constants_s[3]),
+        relative(default, "T5", |p| &mut p.config.servo.lead_time_constants_s[4]),
+        relative(default, "T6", |p| &mut p.config.servo.lag_time_constants_s[0]),
+        relative(default, "T7", |p| &mut p.config.servo.lag_time_constants_s[1]),
+        relative(default, "T8", |p| &mut p.config.servo.lag_time_constants_s[2]),
+        relative(default, "T9", |p| &mut p.config.servo.lag_time_constants_s[3]),
+        relative(tolerance.pickoff_scale, "pickoff_scale", |p| &mut p.measurement.pickoff_factor),
+        relative(tolerance.torque_scale, "torque_scale", |p| &mut p.measurement.torque_factor),
     ]
 }
 

@@ -169,7 +169,7 @@ impl<'a, const L: usize> Law<'a, L> {
         let [before, zeta_before] = from;
         let friction = &self.physics[lane].friction;
         let (along, slip) = (friction.presliding_rad, self.slip_radps[lane]);
-        let full = |w: f64| if friction.builds_up == BuildUp::OnClamp { (w / slip).clamp(-1.0, 1.0) } else { side(w) };
+        let full = |w: f64| if friction.builds_up == BuildUp::OnClamp { within(w / slip, 1.0) } else { side(w) };
         let clamped = if friction.builds_up == BuildUp::LoadAlone {
             (self.viscous[lane].torque_nm(rate.abs()) * friction.viscous_factor / level.max(1e-30)).min(1.0)
         } else {
@@ -196,7 +196,7 @@ impl<'a, const L: usize> Law<'a, L> {
             };
         }
         let w = left(zeta);
-        [w, zeta, (1.0 - clamped) * zeta + clamped * (w / slip).clamp(-1.0, 1.0)]
+        [w, zeta, (1.0 - clamped) * zeta + clamped * within(w / slip, 1.0)]
     }
 
     /// Torques on the gimbal but for the bearings', and what the motor fails to give of its command.

@@ -1,0 +1,199 @@
+//! Power of a channel's noise over frequency, from what is left of it.
+//!
+//! ```text
+//! P(f) = w + l |G(f)|^2 + n |N(f)|^2 + b / (1 + (f / f_c)^2)         w, l, n, b >= 0
+//! ```
+//!
+//! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
+//! to the channel), n the pick-off's noise as the servo answers it ([`super::shapes`]), b noise of low frequency with
+//! its corner. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so
+//! that what happens now and then is no noise either.
+
+use super::plans::Plans;
+use super::shapes::Shapes;
+
+/// Rows of a segment.
+pub(super) const SEGMENT: usize = 4096;
+/// Bands in which power is taken, and steps of the fit.
+const BANDS: usize = 36;
+const STEPS: usize = 120;
+/// What noise of low frequency must bring: few lines show it, and it hides what is slow [nats].
+const SHOWN_NATS: f64 = 1.5;
+/// Corners that are tried [Hz].
+const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
+
+/// Power of a channel's noise over frequency, 1 for white noise of unit variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// w.
+    pub white: f64,
+    /// l.
+    pub inputs: f64,
+    /// n.
+    pub in_loop: f64,
+    /// b.
+    pub low: f64,
+    /// `f_c` [Hz].
+    pub corner_hz: f64,
+    /// Lowest frequency at which it was measured [Hz].
+    pub from_hz: f64,
+}
+
+impl Noise {
+    pub(super) fn power(&self, hz: f64, [inputs, in_loop]: [f64; 2]) -> f64 {
+        self.white + self.inputs * inputs + self.in_loop * in_loop + self.low * low(hz, self.corner_hz)
+    }
+
+    /// At the lines of a transform. Below what was measured it does not fall: which of the shapes the noise has, a few
+    /// lines do not tell, and what does not change would stand out of one of them and not of another.
+    pub(super) fn powers(&self, shapes: &Shapes, last: usize, step_hz: f64) -> Vec<f64> {
+        let least = self.power(self.from_hz, shapes.at(self.from_hz));
+        let at = |line: usize| {
+            let hz = line as f64 * step_hz;
+            self.power(hz, shapes.line(line)).max(if hz < self.from_hz { least } else { 0.0 })
+        };
+        (0..=last).map(at).collect()
+    }
+}
+
+/// The shape of noise of low frequency; of none without a corner.
+fn low(hz: f64, corner_hz: f64) -> f64 {
+    if corner_hz > 0.0 { 1.0 / (1.0 + (hz / corner_hz) * (hz / corner_hz)) } else { 0.0 }
+}
+
+/// What power is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Of {
+    /// The median of segments that count for half at least: what happens now and then is no noise.
+    Most,
+    /// The mean of segments that count for a tenth at least: noise that comes in bursts.
+    All,
+}
+
+/// Measured power in bands.
+pub(super) struct Bands {
+    pub(super) hz: Vec<f64>,
+    pub(super) power: Vec<f64>,
+    /// Degrees of freedom.
+    weight: Vec<f64>,
+}
+
+impl Bands {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
+    pub(super) fn new(values: &[f64], valid: &[bool], of: Of, period_s: f64) -> Self {
+        let length = SEGMENT.min(values.len());
+        let plans = Plans::new(length);
+        let window: Vec<f64> =
+            (0..length).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / length as f64).cos()).collect();
+        let least = if of == Of::Most { 0.5 } else { 0.1 };
+        let mut segments: Vec<Vec<f64>> = Vec::new();
+        for start in (0..=values.len() - length).step_by((length / 2).max(1)) {
+            let counts = |k: &usize| valid[start + k];
+            let gain: f64 = (0..length).filter(counts).map(|k| window[k] * window[k]).sum();
+            let all: f64 = window.iter().map(|value| value * value).sum();
+            if gain > least * all {
+                // what does not change is no noise, and would leak into all bands where rows are missing
+                let weight: f64 = (0..length).filter(counts).map(|k| window[k]).sum();
+                let mean = (0..length).filter(counts).map(|k| window[k] * values[start + k]).sum::<f64>() / weight;
+                let sample = |k: usize| if counts(&k) { (values[start + k] - mean) * window[k] } else { 0.0 };
+                segments.push(plans.lines((0..length).map(sample)).iter().map(|line| line.norm_sqr() / gain).collect());
+            }
+        }
+        let step_hz = 1.0 / (plans.length() as f64 * period_s);
+        let (first, last) = (1.5 * step_hz, 0.5 / period_s);
+        let edge = |band: usize| first * (last / first).powf(band as f64 / BANDS as f64);
+        let mut bands = Self { hz: Vec::new(), power: Vec::new(), weight: Vec::new() };
+        for band in 0..BANDS {
+            let (from, to) = ((edge(band) / step_hz).ceil() as usize, (edge(band + 1) / step_hz).ceil() as usize);
+            let to = to.min(plans.length() / 2);
+            if segments.is_empty() || to <= from {
+                continue;
+            }
+            let mut means: Vec<f64> =
+                segments.iter().map(|power| power[from..to].iter().sum::<f64>() / (to - from) as f64).collect();
+            means.sort_by(f64::total_cmp);
+            // the median of a chi square of n degrees over its mean
+            let n = 2.0 * (to - from) as f64 * length as f64 / plans.length() as f64;
+            let median = (1.0 - 2.0 / (9.0 * n.max(1.0))).powi(3);
+            bands.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
+            bands.power.push(match of {
+                Of::Most => 0.5 * (means[(means.len() - 1) / 2] + means[means.len() / 2]) / median,
+                Of::All => means.iter().sum::<f64>() / means.len() as f64,
+            });
+            bands.weight.push(n * segments.len() as f64);
+        }
+        bands
+    }
+
+    pub(super) fn any(&self) -> bool {
+        !self.hz.is_empty()
+    }
+
+    /// How much of a shape more makes the measured powers most likely.
+    pub(super) fn fit_more(&self, known: &dyn Fn(f64) -> f64, more: &dyn Fn(f64) -> f64, most: f64) -> f64 {
+        let parts: Vec<(f64, f64)> = self.hz.iter().map(|&hz| (known(hz), more(hz))).collect();
+        let mut share = most;
+        for _ in 0..STEPS {
+            let (mut up, mut down) = (0.0, 0.0);
+            for (((known, more), measured), weight) in parts.iter().zip(&self.power).zip(&self.weight) {
+                let model = (known + share * more).max(1e-300);
+                up += weight * more * measured / (model * model);
+                down += weight * more / model;
+            }
+            share = (share * up / down.max(1e-300)).min(most);
+        }
+        share
+    }
+
+    /// The shapes that make the measured powers most likely.
+    pub(super) fn fit(&self, shapes: &Shapes) -> Noise {
+        let from_hz = self.hz.first().copied().unwrap_or(0.0);
+        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0, from_hz });
+        if !self.any() {
+            return best.1;
+        }
+        let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
+        let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
+        let peaks = [peak(0), peak(1)];
+        for corner_hz in std::iter::once(0.0).chain(CORNERS_HZ) {
+            let basis = |&hz: &f64| {
+                let [inputs, in_loop] = shapes.at(hz);
+                [1.0, inputs / peaks[0], in_loop / peaks[1], low(hz, corner_hz)]
+            };
+            let bases: Vec<[f64; 4]> = self.hz.iter().map(basis).collect();
+            let mut share = [mean, 0.1 * mean, 0.1 * mean, 0.1 * mean];
+            let power = |share: &[f64; 4], basis: &[f64; 4]| -> f64 {
+                share.iter().zip(basis).map(|(a, b)| a * b).sum::<f64>().max(1e-300)
+            };
+            for _ in 0..STEPS {
+                let (mut up, mut down) = ([0.0; 4], [0.0; 4]);
+                for ((basis, measured), weight) in bases.iter().zip(&self.power).zip(&self.weight) {
+                    let model = power(&share, basis);
+                    for part in 0..4 {
+                        up[part] += weight * basis[part] * measured / (model * model);
+                        down[part] += weight * basis[part] / model;
+                    }
+                }
+                for part in 0..4 {
+                    share[part] *= up[part] / down[part].max(1e-300);
+                }
+            }
+            let unlikely: f64 = bases
+                .iter()
+                .zip(&self.power)
+                .zip(&self.weight)
+                .map(|((basis, measured), weight)| {
+                    let model = power(&share, basis);
+                    weight * (model.ln() + measured / model)
+                })
+                .sum();
+            let unlikely = unlikely + if corner_hz > 0.0 { 2.0 * SHOWN_NATS } else { 0.0 };
+            if unlikely < best.0 {
+                let [white, inputs, in_loop, low] = share;
+                let (inputs, in_loop) = (inputs / peaks[0], in_loop / peaks[1]);
+                best = (unlikely, Noise { white, inputs, in_loop, low, corner_hz, from_hz });
+            }
+        }
+        best.1
+    }
+}
