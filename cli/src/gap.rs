@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 
 use crate::exit::Failure;
 use crate::interrupt;
+use crate::progress;
 use crate::report;
 
 /// Diagnoses the gap between a model and logs.
@@ -100,7 +101,10 @@ pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
         return printed(args, &told.texts, &one_or_list(told.reports));
     }
     let names: Vec<String> = args.logs.iter().map(|path| path.display().to_string()).collect();
-    let pool = gimbal_gap::pool(&diagnoses, &model);
+    let bar = progress::steps("logs together");
+    let pool = gimbal_gap::pool_step_by_step(&diagnoses, &model, || bar.inc(1));
+    bar.finish_and_clear();
+    interrupt::check()?;
     let pooled = pool.json(&names);
     if let Some(out) = &args.out {
         let text = format!("{pooled:#}\n");
@@ -151,6 +155,7 @@ struct All {
 fn reported(args: &Args, diagnosed: impl Fn(&PathBuf, &str) -> Result<Told, Failure>) -> Result<All, Failure> {
     let mut texts = Vec::new();
     let mut reports: Vec<Value> = Vec::new();
+    let bar = progress::steps("logs");
     for path in &args.logs {
         interrupt::check()?;
         let name = path.display().to_string();
@@ -164,7 +169,9 @@ fn reported(args: &Args, diagnosed: impl Fn(&PathBuf, &str) -> Result<Told, Fail
         }
         texts.push(if args.logs.len() == 1 { text } else { format!("{name}\n{text}") });
         reports.push(json);
+        bar.inc(1);
     }
+    bar.finish_and_clear();
     Ok(All { texts, reports })
 }
 

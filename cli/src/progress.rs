@@ -1,4 +1,4 @@
-//! Progress of reading, shown when standard error is a terminal; Ctrl-C ends the reading.
+//! Progress of reading and of long work, shown when standard error is a terminal; Ctrl-C ends the reading.
 
 use std::fs::File;
 use std::io::{self, IsTerminal, Read};
@@ -10,6 +10,19 @@ use crate::interrupt;
 
 /// Files below this are read before a bar could be seen [bytes].
 const SHOWN_FROM_BYTES: u64 = 16 << 20;
+
+/// Steps of work whose number nobody knows beforehand.
+pub(crate) fn steps(of: &'static str) -> ProgressBar {
+    if !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}: {pos} done, {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.tick();
+    bar.with_message(of)
+}
 
 /// A file that tells how far it is read.
 #[derive(Debug)]

@@ -3,7 +3,7 @@
 use gimbal_log::Log;
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Fit, Ground, Problem, Search, null, raw_residual, search, search_from, without};
+use crate::fit::{Fit, Ground, Problem, Search, Signals, Tried, null, raw_residual, search, search_from, without};
 use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Verdict, Yardstick, bounds_hit, correlations,
     curve, decide, detectable, free_running, one_step, portrait, shrink,
@@ -63,6 +63,19 @@ pub struct Diagnosis {
     pub not_looked_for: Vec<&'static str>,
     /// Friction over the rate.
     pub curve: Vec<CurvePoint>,
+    /// What other logs are asked about; none when the data do not serve.
+    pub(crate) asked: Option<Asked>,
+}
+
+/// What it takes to go on with a log beside others.
+#[derive(Debug, Clone)]
+pub(crate) struct Asked {
+    /// Residual that the noise was taken from; none is what the nominal parameters and a few effects do not explain.
+    pub(crate) noise_from: Option<Signals>,
+    /// The noise that the best fit leaves, over that of the sensors.
+    pub(crate) temper: f64,
+    /// The nominal parameters alone, then every set that was fitted.
+    pub(crate) tried: Vec<Tried>,
 }
 
 impl Diagnosis {
@@ -89,7 +102,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     read.quieten(&crate::library::platform(model));
     let whole = settled(&read, model);
     let away = if astray(&whole) { read.away_from_stop(&model.config.bearing) } else { None };
-    let (mut problem, mut search) = match &away {
+    let Settled { mut problem, mut search, noise_from } = match &away {
         Some(away) => {
             drop(whole);
             settled(away, model)
@@ -97,6 +110,8 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         None => whole,
     };
     let record = problem.record;
+    let tried = [&search.null].into_iter().chain(&search.fits).map(|fit| Tried::new(&problem, fit)).collect();
+    let asked = Asked { noise_from, temper: problem.formulation(search.closest()), tried };
     let mut decision = decide(&problem, &search, &model.tolerance);
     let channels = record.channels.len();
     let mut fit = match decision.chosen {
@@ -186,20 +201,30 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         bounds_hit,
         not_looked_for,
         curve,
+        asked: Some(asked),
     }
+}
+
+/// A search whose noise stands.
+struct Settled<'a> {
+    problem: Problem<'a>,
+    search: Search,
+    noise_from: Option<Signals>,
 }
 
 /// The search, under a noise that its best fit does not stay below: one that does says that the noise was taken too
 /// high, and that what an effect did, or what the nominal parameters could not take away at once, was in it.
-fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
+fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
     let quiet = |problem: &Problem, fit: &Fit| fit.square < TOO_QUIET * problem.whitener.count() as f64;
     let left = |fit: &Fit| Some(raw_residual(record, &fit.prediction));
     let mut ground = Ground::new(record, model);
+    let mut noise_from = None;
     let mut problem = ground.problem(None);
     let mut nominal = null(&problem);
     if quiet(&problem, &nominal) {
         drop(problem);
-        problem = ground.problem(left(&nominal));
+        noise_from = left(&nominal);
+        problem = ground.problem(noise_from.clone());
         nominal = null(&problem);
     }
     let mut found = search_from(&mut problem, nominal);
@@ -208,20 +233,20 @@ fn settled<'a>(record: &'a Record, model: &ModelFile) -> (Problem<'a>, Search) {
         if !quiet(&problem, best) {
             break;
         }
-        let rest = left(best);
+        noise_from = left(best);
         // what is not needed any more is most of the memory
         drop((problem, found));
-        problem = ground.problem(rest);
+        problem = ground.problem(noise_from.clone());
         if more == 0 {
             ground.forget();
         }
         found = search(&mut problem);
     }
-    (problem, found)
+    Settled { problem, search: found, noise_from }
 }
 
 /// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.
-fn astray((problem, search): &(Problem, Search)) -> bool {
+fn astray(Settled { problem, search, .. }: &Settled) -> bool {
     search.closest().square > ASTRAY * problem.whitener.count() as f64
 }
 
@@ -270,5 +295,6 @@ fn refused(record: Record) -> Diagnosis {
         bounds_hit: Vec::new(),
         not_looked_for: Vec::new(),
         curve: Vec::new(),
+        asked: None,
     }
 }

@@ -27,4 +27,4 @@ pub mod report;
 pub mod simulate;
 
 pub use diagnose::{Diagnosis, diagnose};
-pub use pool::{Pool, pool};
+pub use pool::{Pool, pool, pool_step_by_step};

@@ -111,7 +111,7 @@ fn closed_form_logs_of_one_platform_say_together_what_each_says() {
     assert_eq!(same.verdict.name(), "explained", "{}", same.text(&["one".into(), "two".into()]));
     assert_eq!(same.sets[0].effects, ["cable_spring"]);
     let [shared] = &same.shared[..] else { panic!("{:?}", same.shared) };
-    assert!(!shared.drifts() && (shared.mean[0] - 2e-3).abs() < 4.0 * shared.mean[1], "{shared:?}");
+    assert!(!shared.drifts && (shared.mean[0] - 2e-3).abs() < 4.0 * shared.mean[1], "{shared:?}");
     // Each log under what the other one says: most of the gap is gone.
     for (_, signals) in &same.unseen {
         for own in signals {
@@ -120,7 +120,7 @@ fn closed_form_logs_of_one_platform_say_together_what_each_says() {
     }
     // Half as stiff again is no scatter of the estimate.
     let drifting = pool(&[one.clone(), stiffer], &model);
-    assert!(drifting.shared.iter().any(|own| own.effect == "cable_spring" && own.drifts()), "{:?}", drifting.shared);
+    assert!(drifting.shared.iter().any(|own| own.effect == "cable_spring" && own.drifts), "{:?}", drifting.shared);
     // A log repeats itself: what differs is nothing.
     let twice = pool(&[one.clone(), one], &model);
     let [repeat] = &twice.repeats[..] else { panic!("{:?}", twice.repeats) };

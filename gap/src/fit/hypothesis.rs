@@ -56,7 +56,7 @@ pub(crate) struct Free {
     /// A size that has no scale of its own.
     pub(crate) any_scale: bool,
     pub(crate) sigma: f64,
-    center: f64,
+    pub(crate) center: f64,
 }
 
 impl Free {

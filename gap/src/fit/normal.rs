@@ -113,7 +113,7 @@ const ANY: f64 = 8.0;
 
 /// What a size's prior takes from the evidence beyond `ln 8`: a size has no scale of its own, so that effects whose
 /// realistic range is wide are not held to be less likely [nats].
-pub(super) fn of_any_scale(sigma: f64, error: f64) -> f64 {
+pub(crate) fn of_any_scale(sigma: f64, error: f64) -> f64 {
     (sigma / (ANY * error)).max(1.0).ln()
 }
 

@@ -142,6 +142,25 @@ impl<'a> Problem<'a> {
         self.gram.columns_mut(0, fixed).copy_from(&fresh.transpose());
     }
 
+    /// The same without the columns of its candidates, which are for a search alone.
+    pub(crate) fn without_candidates(mut self) -> Self {
+        let fixed = self.columns.begin + self.columns.nuisances;
+        self.whitened.truncate(fixed);
+        self.whitened.shrink_to_fit();
+        self.gram = self.gram.view((0, 0), (fixed, fixed)).into_owned();
+        self
+    }
+
+    /// The first candidate of an effect; one from elsewhere is taken in where there is none.
+    pub(crate) fn candidate_of(&mut self, other: &Candidate) -> usize {
+        let own = self.candidates.iter().position(|candidate| candidate.effect == other.effect);
+        own.unwrap_or_else(|| {
+            self.columns.first.push(self.whitened.len());
+            self.candidates.push(other.clone());
+            self.candidates.len() - 1
+        })
+    }
+
     /// Place of a nominal parameter.
     pub(crate) fn nuisance(&self, name: &str) -> Option<usize> {
         self.nuisances.iter().position(|nuisance| nuisance.name == name)

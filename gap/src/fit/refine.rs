@@ -133,6 +133,18 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
     finish(&hypothesis, point, outcome, last)
 }
 
+/// A set as it stands at a point, without a step.
+pub(crate) fn stand(problem: &Problem, set: &Set, point: Point) -> Fit {
+    let hypothesis = Hypothesis::new(problem, set, &point.values);
+    let outcome = hypothesis.evaluate(&point);
+    let sensitivities = hypothesis.sensitivities(&point, &outcome.prediction);
+    let temper = linearised(problem, outcome.square);
+    let linear = Linear::of(problem);
+    let equations = Equations::new(&hypothesis, &point, &linear, &sensitivities, &outcome.residual, temper);
+    let made = equations.step(0.0).map(|step| (step.solution, sensitivities));
+    finish(&hypothesis, point, outcome, made)
+}
+
 /// How an iteration went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Went {

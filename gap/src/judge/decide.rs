@@ -19,7 +19,7 @@ const SCALE_SHARE: f64 = 1e-5;
 const SCALE_OF_CHANCE: f64 = 1.3;
 const CHANCE: f64 = 1.0;
 /// Probability of a cause that nothing shows, without and with an effect that explains the log.
-const UNSEEN: [f64; 2] = [0.1, 0.04];
+pub(crate) const UNSEEN: [f64; 2] = [0.1, 0.04];
 /// Share of the likeliest set's probability from which on another is not told apart from it.
 const RIVAL: f64 = 0.27;
 /// Least probability that is reported.
@@ -34,17 +34,17 @@ const FORMULATION_LEAVES: f64 = 0.05;
 
 /// What may be left without being told.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Limits {
+pub(crate) struct Limits {
     /// Standard deviations that what is left may stand out by, and the spread of that limit.
-    left_over: f64,
-    left_over_scale: f64,
+    pub(crate) left_over: f64,
+    pub(crate) left_over_scale: f64,
     /// What torques of no effect may take of it beyond chance, and the spread of that limit [nats].
-    strange: f64,
-    strange_scale: f64,
+    pub(crate) strange: f64,
+    pub(crate) strange_scale: f64,
 }
 
 impl Limits {
-    fn of(problem: &Problem) -> Self {
+    pub(crate) fn of(problem: &Problem) -> Self {
         if problem.turns_at_once { AT_ONCE } else { SLOWLY }
     }
 }
@@ -134,11 +134,7 @@ impl Decision {
 
     /// Sets that are not told apart from one: nearly as probable, and more than it with something added.
     fn rivals(&self, own: &[&str]) -> Vec<SetProbability> {
-        let probability = self.ranking.iter().find(|set| set.effects == own).map_or(0.0, |set| set.probability);
-        let rival = |set: &&SetProbability| {
-            !set.effects.is_empty() && !holds(&set.effects, own) && set.probability > RIVAL * probability
-        };
-        self.ranking.iter().filter(rival).cloned().collect()
+        rivals(&self.ranking, own)
     }
 
     /// What stands beside the set that is named: the rest of its class, or whatever else is possible.
@@ -151,6 +147,15 @@ impl Decision {
         let other = |set: &&SetProbability| set.effects != own && set.probability > POSSIBLE;
         self.ranking.iter().filter(other).cloned().collect()
     }
+}
+
+/// Sets of a ranking that are not told apart from one of it.
+pub(crate) fn rivals(ranking: &[SetProbability], own: &[&str]) -> Vec<SetProbability> {
+    let probability = ranking.iter().find(|set| set.effects == own).map_or(0.0, |set| set.probability);
+    let rival = |set: &&SetProbability| {
+        !set.effects.is_empty() && !holds(&set.effects, own) && set.probability > RIVAL * probability
+    };
+    ranking.iter().filter(rival).cloned().collect()
 }
 
 /// Judges what the search found.
@@ -222,14 +227,14 @@ fn name(problem: &Problem, fit: &Fit, set: &Weighed, decision: &mut Decision) {
 }
 
 /// Probabilities of sets that something of the library explains, or nothing has to be explained.
-struct Probabilities {
+pub(crate) struct Probabilities {
     sets: Vec<f64>,
     nothing: f64,
 }
 
 impl Probabilities {
     /// Each set beside the likeliest part of it: a second effect is as likely as what it brings beside the first.
-    fn new(sets: &[Weighed]) -> Self {
+    pub(crate) fn new(sets: &[Weighed]) -> Self {
         let top = sets.iter().map(|set| set.nats).fold(0.0, f64::max);
         let mut order: Vec<usize> = (0..sets.len()).collect();
         order.sort_by_key(|&index| sets[index].effects.len());
@@ -253,7 +258,7 @@ impl Probabilities {
     }
 
     /// The most probable first.
-    fn ranking(&self, sets: &[Weighed], share: f64) -> Vec<SetProbability> {
+    pub(crate) fn ranking(&self, sets: &[Weighed], share: f64) -> Vec<SetProbability> {
         let of = |(set, probability): (&Weighed, &f64)| SetProbability {
             effects: set.effects.clone(),
             probability: share * probability,
@@ -267,7 +272,7 @@ impl Probabilities {
 
 /// How probable it is that no effect of the library is it: from how far what is left stands out beyond a limit, and
 /// from its share of the gap, as a large effect in another formulation leaves something too.
-fn unknown(stands_out: f64, share: f64, limit: f64, scale: f64, found: bool) -> f64 {
+pub(crate) fn unknown(stands_out: f64, share: f64, limit: f64, scale: f64, found: bool) -> f64 {
     let stands_out = 1.0 / (1.0 + (-(stands_out - limit) / scale).exp());
     let share = if found { share } else { 1.0 };
     (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES))

@@ -23,9 +23,15 @@ pub use closed_loop::{Yardstick, free_running, one_step};
 pub use correlation::{Correlation, bounds_hit, correlations};
 pub use curve::{CurvePoint, curve};
 pub use decide::{Decision, Found, SetProbability, Verdict, decide};
+pub(crate) use decide::{Limits, Probabilities, UNSEEN, rivals, unknown};
 pub use detectable::{Detectable, Seen, detectable};
 pub use experiment::experiment;
+pub(crate) use left_over::left_over;
 pub use portrait::{Portrait, portrait};
 pub use shrink::{Shrink, ShrinkSignal, shrink};
 pub use strange::Stranger;
-pub(crate) use weigh::holds;
+pub(crate) use strange::strangers;
+pub(crate) use stretch::{carried_by_one_log, carried_by_one_stretch, pieces};
+pub(crate) use weigh::{
+    COST_OF_SHIFT, HELPS, LEAST_SHARE, NEVER, RARE_SHIFT, Weighed, at_a_bound, beyond, costs_of, is_part,
+};

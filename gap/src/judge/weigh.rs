@@ -5,17 +5,18 @@ use gimbal_plant::{Bound, Effect, Parameter};
 
 use super::stretch::carried_alone;
 use crate::fit::{Fit, Problem, Search};
+use crate::library::releases;
 
 /// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
 const COST: f64 = 18.0;
-const COST_OF_SHIFT: f64 = 15.0;
+pub(crate) const COST_OF_SHIFT: f64 = 15.0;
 /// What it takes more where the bearing turns around slowly: there the friction makes one of them of the noise of the
 /// rate [nats].
 const OFFSETS: [&str; 3] = ["float_torque", "g_sensitive_float_torque", "direction_asymmetry"];
 const COST_SLOWLY: f64 = 22.0;
 /// Evidence from which on an effect is likelier than not, from logs with open answers [nats].
 const RARE: f64 = 7.5;
-const RARE_SHIFT: f64 = 5.0;
+pub(crate) const RARE_SHIFT: f64 = 5.0;
 /// The same for every effect beside the first, on top.
 const RARE_BESIDE: f64 = 4.0;
 /// A parameter at the end of its range [nats].
@@ -23,11 +24,11 @@ const BOUND_HIT: f64 = 20.0;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(super) const BEYOND: f64 = 1.15;
 /// Least share of the gap that an effect takes away.
-const LEAST_SHARE: f64 = 0.003;
+pub(crate) const LEAST_SHARE: f64 = 0.003;
 /// What an effect must take away to be there when its size is not known to be more than zero [nats].
-const HELPS: f64 = 12.0;
+pub(crate) const HELPS: f64 = 12.0;
 /// What rules a set out [nats].
-const NEVER: f64 = 1e3;
+pub(crate) const NEVER: f64 = 1e3;
 
 /// A set of effects.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,11 +90,17 @@ pub(crate) fn names(fit: &Fit) -> Vec<&'static str> {
 }
 
 fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
-    let shifts = set.iter().filter(|&&index| !problem.candidates[index].releases.is_empty()).count() as f64;
-    let added = set.len() as f64 - shifts;
-    let beside = RARE_BESIDE * (set.len() as f64 - 1.0).max(0.0);
-    let offset = |index: &&usize| OFFSETS.contains(&problem.candidates[**index].effect);
-    let offsets = if problem.turns_at_once { 0 } else { set.iter().filter(offset).count() };
+    let effects: Vec<&str> = set.iter().map(|&index| problem.candidates[index].effect).collect();
+    costs_of(&effects, problem.turns_at_once)
+}
+
+/// What effects must bring to be named, and from where on they are likelier than not; whether bearings turn around at
+/// once.
+pub(crate) fn costs_of(effects: &[&str], turns_at_once: bool) -> (f64, f64) {
+    let shifts = effects.iter().filter(|effect| !releases(effect).is_empty()).count() as f64;
+    let added = effects.len() as f64 - shifts;
+    let beside = RARE_BESIDE * (effects.len() as f64 - 1.0).max(0.0);
+    let offsets = if turns_at_once { 0 } else { effects.iter().filter(|effect| OFFSETS.contains(effect)).count() };
     let slowly = COST_SLOWLY * offsets as f64;
     (COST * added + COST_OF_SHIFT * shifts + slowly, RARE * added + RARE_SHIFT * shifts + beside + 0.5 * slowly)
 }
@@ -104,7 +111,7 @@ pub(crate) fn holds(larger: &[&str], smaller: &[&str]) -> bool {
 }
 
 /// The same, and more.
-pub(super) fn is_part(smaller: &[&str], larger: &[&str]) -> bool {
+pub(crate) fn is_part(smaller: &[&str], larger: &[&str]) -> bool {
     smaller.len() < larger.len() && holds(larger, smaller)
 }
 
@@ -151,7 +158,7 @@ fn helps(search: &Search, fit: &Fit, place: usize) -> bool {
 
 /// What a shape beyond its realistic range by more than its error costs: a cable's loop as long as the motion is a
 /// spring.
-fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
+pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
     let Some(effect) = Effect::from_name(effect) else { return 0.0 };
     let shapes = effect.parameters().iter().zip(values.iter().zip(errors)).skip(effect.sizes());
     let outside = |(parameter, (value, error)): (&Parameter, (&f64, &f64))| {
@@ -162,7 +169,7 @@ fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
 }
 
 /// Whether a nominal parameter is beyond its tolerance by more than its own error.
-fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, values: &[f64], errors: &[f64]) -> bool {
+pub(crate) fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, values: &[f64], errors: &[f64]) -> bool {
     let scale = if effect == "mass_unbalance" {
         let unbalance = &problem.base.config.unbalance;
         unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6)

@@ -126,7 +126,7 @@ pub(crate) fn chart(
 }
 
 /// Places of ticks: 1, 2 and 5 times a power of ten, or powers of ten themselves.
-fn ticks(low: f64, high: f64, logarithmic: bool) -> Vec<f64> {
+pub(super) fn ticks(low: f64, high: f64, logarithmic: bool) -> Vec<f64> {
     let raw = (high - low) / INTERVALS;
     let ten = 10_f64.powf(raw.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|one| one * ten).find(|step| *step >= raw).unwrap_or(raw);
@@ -141,7 +141,7 @@ fn ticks(low: f64, high: f64, logarithmic: bool) -> Vec<f64> {
     ticks
 }
 
-fn label(tick: f64, logarithmic: bool) -> String {
+pub(super) fn label(tick: f64, logarithmic: bool) -> String {
     let value = if logarithmic { 10_f64.powf(tick) } else { tick };
     let size = value.abs();
     if size != 0.0 && !(1e-2..1e4).contains(&size) {

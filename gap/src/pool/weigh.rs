@@ -1,0 +1,118 @@
+//! What every set is worth to all logs together, by the rules for one log: the same costs, the same reasons against it.
+
+use gimbal_model_file::Tolerance;
+use gimbal_plant::Effect;
+
+use super::climb::Fitted;
+use super::extend::Promise;
+use super::material::Material;
+use super::parameters::Unit;
+use crate::judge::{
+    HELPS, LEAST_SHARE, NEVER, Weighed, at_a_bound, beyond, carried_by_one_log, carried_by_one_stretch, costs_of,
+    is_part,
+};
+
+/// Sets in the order of their fits, then effects that were only looked at.
+pub(super) fn weigh(
+    materials: &[Material],
+    null: &Fitted,
+    fits: &[Fitted],
+    promises: &[Promise],
+    tolerance: &Tolerance,
+) -> Vec<Weighed> {
+    let at_once = materials.iter().all(|material| material.problem.turns_at_once);
+    let of = |(index, fitted): (usize, &Fitted)| {
+        let (cost, rare) = costs_of(&fitted.effects.names, at_once);
+        let nats = fitted.worth()
+            - null.worth()
+            - alone(null, fits, fitted)
+            - against(materials, null, fits, fitted, tolerance);
+        Weighed { effects: fitted.effects.names.clone(), fit: Some(index), nats, cost, rare }
+    };
+    let mut all: Vec<Weighed> = fits.iter().enumerate().map(of).collect();
+    // what a set has more than a smaller one must be worth it: a nominal parameter that is each log's own may take the
+    // place of an effect, and its prior tells how far it goes
+    let left = |fitted: &Fitted| fitted.squares.iter().sum::<f64>() + fitted.prior;
+    let closest = fits.iter().chain([null]).map(left).fold(f64::MAX, f64::min);
+    let excess = (left(null) - closest).max(1.0);
+    for (index, fitted) in fits.iter().enumerate() {
+        for (other, smaller) in fits.iter().enumerate() {
+            let worthless = is_part(&smaller.effects.names, &fitted.effects.names)
+                && left(smaller) - left(fitted) < LEAST_SHARE * excess;
+            let most = all[other].nats - all[other].cost + all[index].cost - 1.0;
+            if worthless && all[index].nats > most {
+                all[index].nats = most;
+            }
+        }
+    }
+    for promise in promises {
+        let effects = vec![promise.candidate.effect];
+        if !all.iter().any(|set| set.effects == effects) {
+            let (cost, rare) = costs_of(&effects, at_once);
+            all.push(Weighed { effects, fit: None, nats: promise.gain, cost, rare });
+        }
+    }
+    all
+}
+
+/// What one stretch of one log carries alone, and where effects are each log's own, what one log carries: of a value that
+/// all share, the other logs say themselves whether it is theirs too.
+fn alone(null: &Fitted, fits: &[Fitted], fitted: &Fitted) -> f64 {
+    let names = &fitted.effects.names;
+    let smaller = fits
+        .iter()
+        .filter(|other| is_part(&other.effects.names, names) && other.effects.names.len() + 1 == names.len());
+    let has = |fitted: &Fitted| fitted.effects.names.contains(&"torque_saturation");
+    let apart = (0..names.len()).any(|effect| fitted.is_own(Unit::Effect(effect)));
+    let carried = |from: &Fitted| {
+        let gains: Vec<Vec<f64>> = from
+            .pieces
+            .iter()
+            .zip(&fitted.pieces)
+            .map(|(from, to)| from.iter().zip(to).map(|(from, to)| from - to).collect())
+            .collect();
+        let stretch = if has(from) == has(fitted) { carried_by_one_stretch(&gains) } else { 0.0 };
+        if apart { stretch.max(carried_by_one_log(&gains)) } else { stretch }
+    };
+    smaller.chain([null]).map(carried).fold(0.0, f64::max)
+}
+
+/// What speaks against a set: an effect of no size, a shape beyond its range, a parameter inside its tolerance.
+fn against(materials: &[Material], null: &Fitted, fits: &[Fitted], fitted: &Fitted, tolerance: &Tolerance) -> f64 {
+    let of = |(effect, name): (usize, &&'static str)| {
+        let known = fitted.known(materials, effect);
+        let idle = known.iter().all(|(values, errors)| is_idle(name, values, errors));
+        let idle = if idle && !helps(null, fits, fitted, name) { NEVER } else { 0.0 };
+        let all = |of: &dyn Fn(&[f64], &[f64]) -> f64| {
+            known.iter().map(|(values, errors)| of(values, errors)).fold(f64::MAX, f64::min)
+        };
+        let released = !crate::library::releases(name).is_empty();
+        let problem = &materials[0].problem;
+        idle + if !released {
+            all(&|values, errors| at_a_bound(name, values, errors))
+        } else if known.iter().any(|(values, errors)| beyond(problem, tolerance, name, values, errors)) {
+            0.0
+        } else {
+            NEVER
+        }
+    };
+    fitted.effects.names.iter().enumerate().map(of).sum()
+}
+
+/// Whether the size of an effect is zero within three standard errors.
+fn is_idle(effect: &str, values: &[f64], errors: &[f64]) -> bool {
+    let sizes = Effect::from_name(effect).map_or(1, Effect::sizes);
+    values.iter().zip(errors).take(sizes).all(|(value, error)| value.abs() < 3.0 * error)
+}
+
+/// Whether a set is worth more with an effect than without it, though size and shape stand for each other.
+fn helps(null: &Fitted, fits: &[Fitted], fitted: &Fitted, effect: &str) -> bool {
+    let names = &fitted.effects.names;
+    let left = |fitted: &Fitted| fitted.squares.iter().sum::<f64>();
+    let without = |other: &&Fitted| {
+        let others = &other.effects.names;
+        others.len() + 1 == names.len() && is_part(others, names) && !others.contains(&effect)
+    };
+    let mut smaller = fits.iter().filter(without).chain((names.len() == 1).then_some(null)).peekable();
+    smaller.peek().is_some() && smaller.all(|smaller| left(smaller) - left(fitted) > 2.0 * HELPS)
+}
