@@ -8,8 +8,9 @@ use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Verdict, Yardstick, bounds_hit, correlations,
     curve, decide, detectable, free_running, one_step, portrait, shrink,
 };
+use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
-use crate::record::{Record, faults};
+use crate::record::{Data, Record, faults};
 
 /// A fit may leave this much of the noise that was expected, and no less.
 const TOO_QUIET: f64 = 0.98;
@@ -94,13 +95,25 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     if !read.faults.is_empty() {
         return refused(read);
     }
-    let faults = faults(&read, model);
-    if !faults.is_empty() {
-        read.faults = faults;
-        return refused(read);
-    }
+    let doubt = match faults(&read, model) {
+        Data::Sound => None,
+        Data::Faulty(told) => {
+            read.faults = told;
+            return refused(read);
+        }
+        Data::Doubtful(told, undone) => Some((told, undone)),
+    };
     read.quieten(&crate::library::platform(model));
     let whole = settled(&read, model);
+    let mut imitated = None;
+    if let Some((told, undone)) = doubt {
+        if mistaken(&whole, *undone, model) {
+            drop(whole);
+            read.faults.push(told);
+            return refused(read);
+        }
+        imitated = Some(format!("{told}; what the library has explains the log better as it is"));
+    }
     let away = if astray(&whole) { read.away_from_stop(&model.config.bearing) } else { None };
     let Settled { mut problem, mut search, noise_from } = match &away {
         Some(away) => {
@@ -113,6 +126,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let tried = [&search.null].into_iter().chain(&search.fits).map(|fit| Tried::new(&problem, fit)).collect();
     let asked = Asked { noise_from, temper: problem.formulation(search.closest()), tried };
     let mut decision = decide(&problem, &search, &model.tolerance);
+    decision.notes.extend(imitated);
     let channels = record.channels.len();
     let mut fit = match decision.chosen {
         Some(index) => search.fits.swap_remove(index),
@@ -206,15 +220,15 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
 }
 
 /// A search whose noise stands.
-struct Settled<'a> {
-    problem: Problem<'a>,
-    search: Search,
+pub(crate) struct Settled<'a> {
+    pub(crate) problem: Problem<'a>,
+    pub(crate) search: Search,
     noise_from: Option<Signals>,
 }
 
 /// The search, under a noise that its best fit does not stay below: one that does says that the noise was taken too
 /// high, and that what an effect did, or what the nominal parameters could not take away at once, was in it.
-fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
+pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
     let quiet = |problem: &Problem, fit: &Fit| fit.square < TOO_QUIET * problem.whitener.count() as f64;
     let left = |fit: &Fit| Some(raw_residual(record, &fit.prediction));
     let mut ground = Ground::new(record, model);

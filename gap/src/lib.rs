@@ -20,6 +20,7 @@ pub mod diagnose;
 pub mod fit;
 pub mod judge;
 pub mod library;
+mod mistake;
 pub mod place;
 pub mod pool;
 pub mod record;

@@ -141,6 +141,18 @@ fn contract_what_is_wrong_with_the_data_is_named() {
 }
 
 #[test]
+fn contract_an_effect_that_looks_like_a_wrong_sign_is_named() {
+    // the unbalance on the other side along x, and some of it along y
+    let own = ModelFile::default().config.unbalance;
+    let table = Table::of(20.0, &[("mass_unbalance", vec![-1.6 * own.x_kg_m, 0.3 * own.x_kg_m])]);
+    let diagnosis = diagnose(&table.log("other_side"), &ModelFile::default());
+    let notes = &diagnosis.decision.as_ref().expect("a decision").notes;
+    assert!(notes.iter().any(|note| note.contains("has the wrong sign")), "{notes:?}");
+    assert_eq!(diagnosis.record.faults, Vec::<String>::new());
+    assert_eq!(names(&diagnosis), ["mass_unbalance"]);
+}
+
+#[test]
 fn contract_a_fault_that_leaves_enough_invents_no_effect() {
     use Column::{AccelX, AccelY, GyroAngle, MotorTorque};
     let good = Table::of(12.0, &[]);

@@ -62,6 +62,19 @@ fn an_effect_of_each_block_is_named_with_its_size() {
 }
 
 #[test]
+fn a_mode_far_above_the_noise_is_named_however_lightly_damped() {
+    let truth = [0.01, 36.0, 0.015];
+    for excitation in [Excitation::RateTable, Excitation::Flight] {
+        let diagnosis = diagnose(&log_with(excitation, &[("flexible_mode", truth.to_vec())]), &ModelFile::default());
+        assert_eq!(names(&diagnosis), ["flexible_mode"], "{excitation:?}");
+        let found = &diagnosis.decision.as_ref().expect("a decision").found[0];
+        for (value, truth) in found.values.iter().zip(truth) {
+            assert!((value / truth - 1.0).abs() < 0.1, "{excitation:?}: {:?}", found.values);
+        }
+    }
+}
+
+#[test]
 fn two_effects_at_once_are_both_named() {
     let effects = [typical("cable_spring"), typical("stribeck")];
     let diagnosis = diagnose(&log_with(Excitation::Manoeuvre, &effects), &ModelFile::default());

@@ -49,6 +49,9 @@ pub(crate) struct Ground<'a> {
     /// Rows at which the bearing turns around, and what the noise of the rate does there.
     turns: Vec<bool>,
     turned: OnceLock<Turned>,
+    /// What the nominal parameters and a few effects do not explain: lines are looked for here, as what a fit leaves has
+    /// them no more.
+    gap: OnceLock<Signals>,
 }
 
 impl<'a> Ground<'a> {
@@ -99,19 +102,18 @@ impl<'a> Ground<'a> {
             sigma,
             raw,
             turned: OnceLock::new(),
+            gap: OnceLock::new(),
         }
     }
 
     /// Under the noise that a residual shows; without one, under what the nominal parameters and a few effects do not
     /// explain.
     pub(crate) fn problem(&self, known: Option<Signals>) -> Problem<'a> {
-        let rest = match known {
-            None => {
-                let raw = Raw { columns: &self.raw, layout: &self.columns, sigma: &self.sigma, valid: &self.valid };
-                rest(&raw, &self.target)
-            }
-            Some(known) => scaled(known, &self.over_noise),
-        };
+        let gap = self.gap.get_or_init(|| {
+            let raw = Raw { columns: &self.raw, layout: &self.columns, sigma: &self.sigma, valid: &self.valid };
+            rest(&raw, &self.target)
+        });
+        let rest = known.map_or_else(|| gap.clone(), |known| scaled(known, &self.over_noise));
         let turns_at_once = at_once(&self.turns);
         let whitener = self.whitener(&rest, turns_at_once);
         let period_s = self.record.inputs.period_s;
@@ -119,7 +121,7 @@ impl<'a> Ground<'a> {
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
         let mut more = Vec::new();
-        for candidate in self.narrow(&path, &whitener, &rest) {
+        for candidate in self.narrow(&path, &whitener, gap) {
             columns.first.push(self.raw.len() + more.len());
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             more.extend(self.draft().probes(&candidate));
@@ -186,8 +188,8 @@ impl<'a> Ground<'a> {
         let period_s = inputs.period_s;
         let drive = path.drive(whitener, &whitener.apply(rest));
         let cycles = ripple::cycles(path, &drive, &inputs.rel_rad(&self.nominal), &self.valid, period_s);
-        let modes_hz = resonance::frequencies(path, whitener, &drive, &self.nominal.gimbal_rate_radps, period_s);
-        let mut narrow = narrow(&cycles, &modes_hz);
+        let modes = resonance::modes(path, whitener, &drive, &self.nominal.gimbal_rate_radps, period_s);
+        let mut narrow = narrow(&cycles, &modes);
         narrow.retain(|candidate| !self.not_looked_for.contains(&candidate.effect));
         narrow
     }

@@ -271,11 +271,13 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
             } else {
                 vec![0.0; candidate.releases.len()]
             };
-            let sane = candidate.effect != "loop_delay"
-                && candidate.effect != "presliding"
-                && candidate.effect != "dead_zone"
-                && candidate.effect != "torque_saturation"
-                || amplitudes.first().is_some_and(|amplitude| *amplitude > LEAST_SECANT && *amplitude < 8.0);
+            let first = amplitudes.first().copied().unwrap_or(0.0);
+            let sane = match candidate.effect {
+                "loop_delay" | "presliding" | "dead_zone" | "torque_saturation" => first > LEAST_SECANT && first < 8.0,
+                // there is no inertia below zero
+                "flexible_mode" => first > 0.0,
+                _ => true,
+            };
             let sizes = (wide.len() - candidate.probes.len()..wide.len()).zip(&candidate.prior);
             let scale_free: f64 =
                 sizes.map(|(place, (_, sigma))| of_any_scale(*sigma, solution.covariance[(place, place)].sqrt())).sum();

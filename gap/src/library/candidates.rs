@@ -26,6 +26,9 @@ const CEILINGS_UNSEEN: [f64; 16] =
 
 /// Damping at which a mode is looked for.
 pub(crate) const MODE_DAMPING: f64 = 0.03;
+/// Inertia over damping at which a narrow mode is linear in its inertia: at its peak the appendage acts as
+/// `1 / (2 damping)` times its inertia does.
+const LINEAR_SHARE: f64 = 0.2;
 
 /// What the log offers to the effects.
 #[derive(Debug, Clone, Copy, Default)]
@@ -84,19 +87,21 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
     }
 }
 
-/// Candidates too narrow for a grid: ripple of so many cycles a revolution, modes of such frequencies [Hz].
+/// Candidates too narrow for a grid: ripple of so many cycles a revolution, modes of such frequencies [Hz]
+/// and damping.
 #[must_use]
-pub fn narrow(cycles: &[f64], modes_hz: &[f64]) -> Vec<Candidate> {
+pub fn narrow(cycles: &[f64], modes: &[[f64; 2]]) -> Vec<Candidate> {
     let ripple = |cycles: &f64| {
         let quarter = std::f64::consts::FRAC_PI_2;
         let probes = vec![(vec![1e-4, *cycles, 0.0], 1e-4), (vec![1e-4, *cycles, quarter], 1e-4)];
         Candidate { effect: "torque_ripple", probes, prior: vec![(0.0, 5e-4); 2], releases: &[], siblings: 100 }
     };
-    let mode = |hz: &f64| {
-        let probes = vec![(vec![0.015, *hz, MODE_DAMPING], 0.015)];
-        Candidate { effect: "flexible_mode", probes, prior: vec![(0.0, 0.075)], releases: &[], siblings: 100 }
+    let mode = |[hz, damping]: &[f64; 2]| {
+        let share = LINEAR_SHARE * damping;
+        let probes = vec![(vec![share, *hz, *damping], share)];
+        Candidate { effect: "flexible_mode", probes, prior: vec![(0.0, 0.075)], releases: &[], siblings: 400 }
     };
-    cycles.iter().map(ripple).chain(modes_hz.iter().map(mode)).collect()
+    cycles.iter().map(ripple).chain(modes.iter().map(mode)).collect()
 }
 
 /// The nominal parameters that an effect shifts; none where it adds something.

@@ -37,9 +37,26 @@ fn scale(values: &mut [f64], by: f64) {
     }
 }
 
-/// Mistakes in the data, in words.
+/// What is wrong with the data.
+#[derive(Debug, Clone)]
+pub enum Data {
+    /// Nothing that shows.
+    Sound,
+    /// Mistakes, in words.
+    Faulty(Vec<String>),
+    /// A mistake that an effect may imitate, and the record with it undone.
+    Doubtful(String, Box<Record>),
+}
+
+impl Data {
+    fn faulty(told: Vec<String>) -> Self {
+        if told.is_empty() { Self::Sound } else { Self::Faulty(told) }
+    }
+}
+
+/// Mistakes in the data.
 #[must_use]
-pub fn faults(record: &Record, model: &ModelFile) -> Vec<String> {
+pub fn faults(record: &Record, model: &ModelFile) -> Data {
     let mut physics = crate::library::platform(model);
     physics.config.gyro.stop_angle_rad *= 1.5;
     let first = |signal| record.channel(signal).map(|channel| channel.values[0]);
@@ -63,10 +80,20 @@ pub fn faults(record: &Record, model: &ModelFile) -> Vec<String> {
         (ratios.iter().sum::<f64>() / ratios.len().max(1) as f64, ratios)
     };
     let (nominal, ratios) = misfit(&record.inputs);
-    let mut told = outputs(record, &physics, &ratios);
+    let (turned, mut told) = outputs(record, &physics, &ratios);
     told.extend(beyond(record, model));
+    if let ([signal], true) = (&turned[..], told.is_empty()) {
+        let mut undone = record.clone();
+        undone.channels.iter_mut().filter(|own| own.signal == *signal).for_each(|own| scale(&mut own.values, -1.0));
+        return Data::Doubtful(turned_around(*signal), Box::new(undone));
+    }
+    if turned.len() == ratios.len() && turned.len() > 1 {
+        told.push("vehicle_rate_radps has the wrong sign, or all outputs have".to_owned());
+    } else {
+        told.extend(turned.into_iter().map(turned_around));
+    }
     if nominal < OFF || !told.is_empty() {
-        return told;
+        return Data::faulty(told);
     }
     let mut best = (MENDED * nominal, None);
     for (name, undo) in INPUTS {
@@ -76,11 +103,16 @@ pub fn faults(record: &Record, model: &ModelFile) -> Vec<String> {
         inputs.complete(&model.config.bearing, begin_rad);
         let (mended, _) = misfit(&inputs);
         if mended < best.0 {
-            best = (mended, Some(name));
+            best = (mended, Some((name, inputs)));
         }
     }
-    told.extend(best.1.map(|name| format!("{name}: undone, the misfit falls from {nominal:.2} to {:.3}", best.0)));
-    told
+    let (mended, Some((name, inputs))) = best else { return Data::Sound };
+    let undone = Record { inputs, ..record.clone() };
+    Data::Doubtful(format!("{name}: undone, the misfit falls from {nominal:.2} to {mended:.3}"), Box::new(undone))
+}
+
+fn turned_around(signal: Signal) -> String {
+    format!("{} has the wrong sign", signal.column().name())
 }
 
 /// A rate that the platform was not made for: degrees, most likely.
@@ -94,9 +126,10 @@ fn beyond(record: &Record, model: &ModelFile) -> Option<String> {
     })
 }
 
-/// Mistakes of single outputs: factor against the prediction, and shift between torque and angle.
-fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> Vec<String> {
-    let mut told = Vec::new();
+/// Mistakes of single outputs: those whose sign is wrong; and in words, factors against the prediction and shifts
+/// between torque and angle.
+fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> (Vec<Signal>, Vec<String>) {
+    let (mut turned, mut told) = (Vec::new(), Vec::new());
     let theta = record.channel(Signal::GyroAngle);
     let begin = Begin::at(
         physics,
@@ -120,7 +153,7 @@ fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> Vec<String> {
         let fits = cross * cross / (own * all).max(1e-30) > 0.6;
         let name = channel.signal.column().name();
         if fits && factor < -0.5 && factor > -2.0 {
-            told.push(format!("{name} has the wrong sign"));
+            turned.push(channel.signal);
         } else if fits && factor.abs() > 35.0 && factor.abs() < 90.0 {
             told.push(format!("{name} is {factor:.1} times what the model gives: the unit seems to be degrees"));
         } else if fits && factor.abs() < 1.0 / 35.0 && factor.abs() > 1.0 / 90.0 {
@@ -129,10 +162,8 @@ fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> Vec<String> {
             ));
         }
     }
-    if told.len() == ratios.len() && told.len() > 1 && told.iter().all(|told| told.ends_with("wrong sign")) {
-        return vec!["vehicle_rate_radps has the wrong sign, or all outputs have".to_owned()];
-    }
-    if told.is_empty()
+    if turned.is_empty()
+        && told.is_empty()
         && let Some(shift_s) = shift_s(record, &prediction.motor_torque_nm, &prediction.gyro_angle_rad)
     {
         told.push(format!(
@@ -140,7 +171,7 @@ fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> Vec<String> {
             1e3 * shift_s
         ));
     }
-    told
+    (turned, told)
 }
 
 /// Time by which the torque is late against the angle, each aligned with its prediction.

@@ -14,7 +14,7 @@ use gimbal_servo::{Config, bearing};
 
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
-pub use faults::faults;
+pub use faults::{Data, faults};
 pub(crate) use plateau::{peak_rad, plateau};
 pub use quiet::RateNoise;
 pub(crate) use quiet::between;
