@@ -92,6 +92,11 @@ fn main() {
                 let start = Instant::now();
                 let pool = pool(&logs[..*count], &ModelFile::default());
                 eprintln!("a log by itself {each_s:.1} s, {count} together {:.1} s", start.elapsed().as_secs_f64());
+                for set in pool.sets.iter().take(4) {
+                    let fitted = if set.is_fitted { "" } else { ", not fitted" };
+                    eprintln!("  {:?}: {:.3}, {:.1} nats{fitted}", set.effects, set.probability, set.nats);
+                }
+                eprintln!("  unknown {:.3}, {}", pool.unknown_probability, pool.headline());
                 for own in pool.shared.iter().filter(|own| own.effect == name) {
                     let [value, error] = own.mean;
                     eprintln!("{size:.2e}, {count} logs: {value:.3e} +- {error:.1e}, {}", own.preference());

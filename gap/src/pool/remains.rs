@@ -1,7 +1,7 @@
 //! What the logs keep when all of them are fitted together: whether it goes with something that no effect of the
 //! library is asked for, in one log or in all of them.
 //!
-//! A log's remains count as in its own diagnosis. What torques of no effect take is added up over the logs too: of n logs
+//! A log's remains count as in its own diagnosis; that it is the strangest of n takes ln n nats off. What torques of no effect take is added up over the logs too: of n logs
 //! without one, chance adds up to the root of n times what it makes of one.
 
 use super::climb::Fitted;
@@ -59,7 +59,11 @@ pub(super) fn remains(materials: &[Material], null: &Fitted, fitted: &Fitted, ex
     let taken = 0.5 * (null.squares.iter().sum::<f64>() - fitted.squares.iter().sum::<f64>());
     // one log at a time: each asks for a library of torques
     let asked = materials.iter().enumerate().filter(|(_, material)| found || !explained.contains(&material.log));
-    let each: Vec<Left> = asked.map(|(log, material)| Left::of(log, material, null, fitted)).collect();
+    let mut each: Vec<Left> = asked.map(|(log, material)| Left::of(log, material, null, fitted)).collect();
+    let choice = (each.len().max(1) as f64).ln();
+    for left in &mut each {
+        left.limits.strange += choice;
+    }
     let of_strange =
         |nats: f64, limit: f64, scale: f64| unknown(nats, nats / (nats + taken).max(1e-9), limit, scale, found);
     let of_log = |left: &Left| {

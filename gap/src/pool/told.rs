@@ -7,7 +7,11 @@ use crate::judge::{Verdict, Yardstick};
 
 /// Evidence in words: no digits beyond what anybody reads.
 pub(crate) fn nats(value: f64) -> String {
-    if value.abs() < 1e4 { format!("{value:.1}") } else { format!("{value:.1e}") }
+    match value.abs() {
+        size if size < 1e3 => format!("{value:.1}"),
+        size if size < 1e7 => format!("{value:.0}"),
+        _ => format!("{value:.1e}"),
+    }
 }
 
 impl Shared {
