@@ -147,6 +147,13 @@ fn closed_form_pairs_below_detectable_and_beyond_the_table() {
     let blamed = found("explained", &[("torque_ripple", 0.9)], 0.05);
     let blamed = one(Kind::Beyond, vec![effect("torque_pulses", 4.0, &[])], blamed);
     assert!(!blamed.flagged_unknown && !blamed.right);
+    // where an effect of the table takes its place, that one may stand for it
+    let like = one(
+        Kind::Beyond,
+        vec![effect("rate_squared_torque", 4.0, &["quadratic_drag"])],
+        found("explained", &[("quadratic_drag", 0.9)], 0.05),
+    );
+    assert!(!like.flagged_unknown && like.right && (like.on_truth - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -210,6 +217,11 @@ fn closed_form_a_small_corpus_adds_up() {
     let page = html(&head, &score);
     assert!(page.contains("a&lt;b") && page.contains("<svg") && !page.contains("<script"));
     assert!(markdown(&head, &score).contains("| top-1, one effect"));
+    // an unknown effect whose place one of the table takes cannot be told: it does not count
+    let like = vec![effect("rate_squared_torque", 4.0, &["quadratic_drag"])];
+    let mut more = judged;
+    more.push(one(Kind::Beyond, like, found("explained", &[("quadratic_drag", 0.9)], 0.05)));
+    assert_eq!(Score::of(&more).unknown_at_5_percent, Rate { hits: 1, of: 1 });
 }
 
 /// A hundred logs with one effect each, of which the first `right` are named rightly with a probability of `p`.

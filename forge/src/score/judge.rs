@@ -125,7 +125,7 @@ fn fill(judged: &mut Judged, report: &Report) {
         (Kind::Nothing, _) => !judged.detected,
         (_, Verdict::CannotTell) if report.refuses() => below_detectable(answer),
         (_, Verdict::NoGap) => below_detectable(answer),
-        (Kind::Beyond, _) => judged.flagged_unknown,
+        (Kind::Beyond, _) if judged.flagged_unknown => true,
         (_, Verdict::CannotTell) => in_class,
         (_, Verdict::Explained | Verdict::PartlyExplained) => seen,
         (_, Verdict::Unexplained) => false,
@@ -142,7 +142,8 @@ fn fill(judged: &mut Judged, report: &Report) {
         .map(|(_, probability)| probability)
         .sum();
     judged.on_truth = match answer.kind {
-        Kind::Beyond => report.unknown_probability,
+        // an effect of the table that leaves nothing of it is of its class
+        Kind::Beyond => report.unknown_probability + on_sets,
         Kind::One => report
             .ranking()
             .iter()

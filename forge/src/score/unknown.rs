@@ -19,11 +19,18 @@ fn unknown_p(one: &Judged) -> f64 {
     })
 }
 
-/// Share of unknown cases above the threshold that the given share of the others exceeds, and the area under the curve.
+/// Whether an effect of the table takes the place of an unknown one: no log can say then that it is unknown.
+fn is_like_a_known_one(one: &Judged) -> bool {
+    one.answer.effects.iter().any(|effect| !effect.equivalents.is_empty())
+}
+
+/// Share of unknown cases above the threshold that the given share of the others exceeds, and the area under the curve;
+/// without the unknown ones whose place an effect of the table takes.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a place in a list
 pub(super) fn unknown_curve(all: &[&Judged]) -> (Rate, Option<f64>) {
     let of = |beyond: bool| -> Vec<f64> {
-        all.iter().filter(|one| (one.answer.kind == Kind::Beyond) == beyond).map(|one| unknown_p(one)).collect()
+        let counts = |one: &&&Judged| (one.answer.kind == Kind::Beyond) == beyond && !(beyond && is_like_a_known_one(one));
+        all.iter().filter(counts).map(|one| unknown_p(one)).collect()
     };
     let (unknown, mut known) = (of(true), of(false));
     if unknown.is_empty() || known.is_empty() {
