@@ -5,7 +5,7 @@
 pub mod corpus;
 
 use corpus::{Case, Excitation, as_log};
-use gimbal_gap::fit::{Problem, search};
+use gimbal_gap::fit::{Problem, null, search};
 use gimbal_gap::record::Record;
 use gimbal_log::{Log, Needs};
 use gimbal_model_file::ModelFile;
@@ -37,7 +37,8 @@ fn main() {
     record.quieten(&gimbal_gap::library::platform(&model));
     println!("rate noise {:.2e} filtered {}", record.rate_noise.rms_radps, record.rate_noise.pass.len() > 1);
     let mut problem = Problem::new(&record, &model);
-    let search = search(&mut problem);
+    let nominal = null(&problem, None);
+    let search = search(&mut problem, nominal);
     let count = problem.whitener.count() as f64;
     println!("noise {:?} count {count} null square/count {:.4}", problem.noise, search.null.square / count);
     let channels = problem.record.channels.len();

@@ -3,7 +3,7 @@
 use gimbal_log::Log;
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Fit, Ground, Problem, Search, Signals, Tried, null, raw_residual, search, search_from, without};
+use crate::fit::{Fit, Ground, Known, Problem, Search, Tried, null, raw_residual, search, without};
 use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Verdict, Yardstick, bounds_hit, correlations,
     curve, decide, detectable, free_running, one_step, portrait, shrink,
@@ -14,6 +14,8 @@ use crate::record::{Data, Record, faults};
 
 /// A fit may leave this much of the noise that was expected, and no less.
 const TOO_QUIET: f64 = 0.98;
+/// How sure it must be that noise of low frequency was taken too high: few lines that hide what is slow [nats].
+const TOO_HIGH: f64 = 8.0;
 /// How often the noise is taken again.
 const AGAIN: usize = 2;
 
@@ -71,8 +73,8 @@ pub struct Diagnosis {
 /// What it takes to go on with a log beside others.
 #[derive(Debug, Clone)]
 pub(crate) struct Asked {
-    /// Residual that the noise was taken from; none is what the nominal parameters and a few effects do not explain.
-    pub(crate) noise_from: Option<Signals>,
+    /// What the noise was taken from; none is what the nominal parameters and a few effects do not explain.
+    pub(crate) known: Option<Known>,
     /// The noise that the best fit leaves, over that of the sensors.
     pub(crate) temper: f64,
     /// The nominal parameters alone, then every set that was fitted.
@@ -115,7 +117,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         imitated = Some(format!("{told}; what the library has explains the log better as it is"));
     }
     let away = if astray(&whole) { read.away_from_stop(&model.config.bearing) } else { None };
-    let Settled { mut problem, mut search, noise_from } = match &away {
+    let Settled { mut problem, mut search, known } = match &away {
         Some(away) => {
             drop(whole);
             settled(away, model)
@@ -124,7 +126,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     };
     let record = problem.record;
     let tried = [&search.null].into_iter().chain(&search.fits).map(|fit| Tried::new(&problem, fit)).collect();
-    let asked = Asked { noise_from, temper: problem.formulation(search.closest()), tried };
+    let asked = Asked { known, temper: problem.formulation(search.closest()), tried };
     let mut decision = decide(&problem, &search, &model.tolerance);
     decision.notes.extend(imitated);
     let channels = record.channels.len();
@@ -223,40 +225,46 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
 pub(crate) struct Settled<'a> {
     pub(crate) problem: Problem<'a>,
     pub(crate) search: Search,
-    noise_from: Option<Signals>,
+    known: Option<Known>,
 }
 
 /// The search, under a noise that its best fit does not stay below: one that does says that the noise was taken too
 /// high, and that what an effect did, or what the nominal parameters could not take away at once, was in it.
 pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
-    let quiet = |problem: &Problem, fit: &Fit| fit.square < TOO_QUIET * problem.whitener.count() as f64;
-    let left = |fit: &Fit| Some(raw_residual(record, &fit.prediction));
+    let quiet = |problem: &Problem, fit: &Fit| {
+        fit.square < TOO_QUIET * problem.whitener.count() as f64
+            || problem.whitener.too_high(&fit.residual, record.inputs.period_s) > TOO_HIGH
+    };
+    let raw = |fit: &Fit| raw_residual(record, &fit.prediction);
+    let left = |best: &Fit, null: &Fit| Some(Known { noise: raw(best), gap: raw(null) });
     let mut ground = Ground::new(record, model);
-    let mut noise_from = None;
+    let mut known = None;
     let mut problem = ground.problem(None);
-    let mut nominal = null(&problem);
+    let mut nominal = null(&problem, None);
     if quiet(&problem, &nominal) {
         drop(problem);
-        noise_from = left(&nominal);
-        problem = ground.problem(noise_from.clone());
-        nominal = null(&problem);
+        known = left(&nominal, &nominal);
+        problem = ground.problem(known.clone());
+        nominal = null(&problem, Some(&nominal));
     }
-    let mut found = search_from(&mut problem, nominal);
+    let mut found = search(&mut problem, nominal);
     for more in (0..AGAIN).rev() {
         let best = found.closest();
         if !quiet(&problem, best) {
             break;
         }
-        noise_from = left(best);
+        known = left(best, &found.null);
+        let from = found.null;
         // what is not needed any more is most of the memory
-        drop((problem, found));
-        problem = ground.problem(noise_from.clone());
+        drop((problem, found.fits));
+        problem = ground.problem(known.clone());
         if more == 0 {
             ground.forget();
         }
-        found = search(&mut problem);
+        nominal = null(&problem, Some(&from));
+        found = search(&mut problem, nominal);
     }
-    Settled { problem, search: found, noise_from }
+    Settled { problem, search: found, known }
 }
 
 /// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.

@@ -29,7 +29,8 @@ fn is_like_a_known_one(one: &Judged) -> bool {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a place in a list
 pub(super) fn unknown_curve(all: &[&Judged]) -> (Rate, Option<f64>) {
     let of = |beyond: bool| -> Vec<f64> {
-        let counts = |one: &&&Judged| (one.answer.kind == Kind::Beyond) == beyond && !(beyond && is_like_a_known_one(one));
+        let counts =
+            |one: &&&Judged| (one.answer.kind == Kind::Beyond) == beyond && !(beyond && is_like_a_known_one(one));
         all.iter().filter(counts).map(|one| unknown_p(one)).collect()
     };
     let (unknown, mut known) = (of(true), of(false));

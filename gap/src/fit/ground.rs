@@ -49,9 +49,15 @@ pub(crate) struct Ground<'a> {
     /// Rows at which the bearing turns around, and what the noise of the rate does there.
     turns: Vec<bool>,
     turned: OnceLock<Turned>,
-    /// What the nominal parameters and a few effects do not explain: lines are looked for here, as what a fit leaves has
-    /// them no more.
-    gap: OnceLock<Signals>,
+}
+
+/// What fits leave of a log.
+#[derive(Debug, Clone)]
+pub(crate) struct Known {
+    /// The closest one: noise.
+    pub(crate) noise: Signals,
+    /// The nominal parameters alone: what lines are looked for in.
+    pub(crate) gap: Signals,
 }
 
 impl<'a> Ground<'a> {
@@ -102,26 +108,30 @@ impl<'a> Ground<'a> {
             sigma,
             raw,
             turned: OnceLock::new(),
-            gap: OnceLock::new(),
         }
     }
 
-    /// Under the noise that a residual shows; without one, under what the nominal parameters and a few effects do not
-    /// explain.
-    pub(crate) fn problem(&self, known: Option<Signals>) -> Problem<'a> {
-        let gap = self.gap.get_or_init(|| {
-            let raw = Raw { columns: &self.raw, layout: &self.columns, sigma: &self.sigma, valid: &self.valid };
-            rest(&raw, &self.target)
-        });
-        let rest = known.map_or_else(|| gap.clone(), |known| scaled(known, &self.over_noise));
+    /// Under the noise that what is known to be left shows; without it, under what the nominal parameters and a few effects
+    /// do not explain.
+    pub(crate) fn problem(&self, known: Option<Known>) -> Problem<'a> {
+        let known = match known {
+            None => {
+                let raw = Raw { columns: &self.raw, layout: &self.columns, sigma: &self.sigma, valid: &self.valid };
+                let rest = rest(&raw, &self.target);
+                Known { noise: rest.clone(), gap: rest }
+            }
+            Some(Known { noise, gap }) => {
+                Known { noise: scaled(noise, &self.over_noise), gap: scaled(gap, &self.over_noise) }
+            }
+        };
         let turns_at_once = at_once(&self.turns);
-        let whitener = self.whitener(&rest, turns_at_once);
+        let whitener = self.whitener(&known.noise, turns_at_once);
         let period_s = self.record.inputs.period_s;
         let path = Path::new(&whitener, &self.impulse.channels, self.impulse.torque_nm, period_s);
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
         let mut more = Vec::new();
-        for candidate in self.narrow(&path, &whitener, gap) {
+        for candidate in self.narrow(&path, &whitener, &known.gap) {
             columns.first.push(self.raw.len() + more.len());
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             more.extend(self.draft().probes(&candidate));

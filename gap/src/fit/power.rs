@@ -1,12 +1,12 @@
 //! Power of a channel's noise over frequency, from what is left of it.
 //!
 //! ```text
-//! P(f) = w + l |G(f)|^2 + n |N(f)|^2 + b / (1 + (f / f_c)^2)         w, l, n, b >= 0
+//! P(f) = w + l |G(f)|^2 + n |N(f)|^2 + b / (1 + (f / f_c)^s)         w, l, n, b >= 0     s = 2 or 1
 //! ```
 //!
 //! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
 //! to the channel), n the pick-off's noise as the servo answers it ([`super::shapes`]), b noise of low frequency with
-//! its corner. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so
+//! its corner and its slope: s = 1 is flicker, which has no corner in the log or one where it ends. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so
 //! that what happens now and then is no noise either.
 
 use super::plans::Plans;
@@ -19,8 +19,11 @@ const BANDS: usize = 36;
 const STEPS: usize = 120;
 /// What noise of low frequency must bring: few lines show it, and it hides what is slow [nats].
 const SHOWN_NATS: f64 = 1.5;
-/// Corners that are tried [Hz].
+/// Corners that are tried of the slope 2, and of the slope 1: that one must bring more, as it goes on rising where
+/// nothing is measured [Hz], [nats].
 const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
+const FLICKER_CORNERS_HZ: [f64; 3] = [0.05, 1.0, 10.0];
+const FLICKER_NATS: f64 = 3.5;
 
 /// Power of a channel's noise over frequency, 1 for white noise of unit variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,13 +38,15 @@ pub struct Noise {
     pub low: f64,
     /// `f_c` [Hz].
     pub corner_hz: f64,
+    /// Whether s is 1.
+    pub flickers: bool,
     /// Lowest frequency at which it was measured [Hz].
     pub from_hz: f64,
 }
 
 impl Noise {
     pub(super) fn power(&self, hz: f64, [inputs, in_loop]: [f64; 2]) -> f64 {
-        self.white + self.inputs * inputs + self.in_loop * in_loop + self.low * low(hz, self.corner_hz)
+        self.white + self.inputs * inputs + self.in_loop * in_loop + self.low * low(hz, (self.corner_hz, self.flickers))
     }
 
     /// At the lines of a transform. Below what was measured it does not fall: which of the shapes the noise has, a few
@@ -57,8 +62,9 @@ impl Noise {
 }
 
 /// The shape of noise of low frequency; of none without a corner.
-fn low(hz: f64, corner_hz: f64) -> f64 {
-    if corner_hz > 0.0 { 1.0 / (1.0 + (hz / corner_hz) * (hz / corner_hz)) } else { 0.0 }
+fn low(hz: f64, (corner_hz, flickers): (f64, bool)) -> f64 {
+    let over = hz / corner_hz;
+    if corner_hz > 0.0 { 1.0 / (1.0 + if flickers { over } else { over * over }) } else { 0.0 }
 }
 
 /// What power is taken of.
@@ -129,6 +135,20 @@ impl Bands {
         !self.hz.is_empty()
     }
 
+    /// How sure it is that the lowest bands together have less power than 1, up to whichever of them that shows most [nats].
+    pub(super) fn below_one(&self) -> f64 {
+        let (mut power, mut weight, mut most) = (0.0, 0.0, 0.0_f64);
+        for (band, own) in self.power.iter().zip(&self.weight) {
+            power += own * band;
+            weight += own;
+            let mean: f64 = power / weight;
+            if mean < 1.0 {
+                most = most.max(0.5 * weight * (mean - 1.0 - mean.max(1e-30).ln()));
+            }
+        }
+        most
+    }
+
     /// How much of a shape more makes the measured powers most likely.
     pub(super) fn fit_more(&self, known: &dyn Fn(f64) -> f64, more: &dyn Fn(f64) -> f64, most: f64) -> f64 {
         let parts: Vec<(f64, f64)> = self.hz.iter().map(|&hz| (known(hz), more(hz))).collect();
@@ -148,17 +168,23 @@ impl Bands {
     /// The shapes that make the measured powers most likely.
     pub(super) fn fit(&self, shapes: &Shapes) -> Noise {
         let from_hz = self.hz.first().copied().unwrap_or(0.0);
-        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0, from_hz });
+        let mut best = (
+            f64::MAX,
+            Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0, flickers: false, from_hz },
+        );
         if !self.any() {
             return best.1;
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
         let peaks = [peak(0), peak(1)];
-        for corner_hz in std::iter::once(0.0).chain(CORNERS_HZ) {
+        let flickering = FLICKER_CORNERS_HZ.map(|corner_hz| (corner_hz, true, FLICKER_NATS));
+        let steep = CORNERS_HZ.map(|corner_hz| (corner_hz, false, SHOWN_NATS));
+        let slow = steep.into_iter().chain(flickering);
+        for (corner_hz, flickers, must_bring) in std::iter::once((0.0, false, 0.0)).chain(slow) {
             let basis = |&hz: &f64| {
                 let [inputs, in_loop] = shapes.at(hz);
-                [1.0, inputs / peaks[0], in_loop / peaks[1], low(hz, corner_hz)]
+                [1.0, inputs / peaks[0], in_loop / peaks[1], low(hz, (corner_hz, flickers))]
             };
             let bases: Vec<[f64; 4]> = self.hz.iter().map(basis).collect();
             let mut share = [mean, 0.1 * mean, 0.1 * mean, 0.1 * mean];
@@ -187,11 +213,11 @@ impl Bands {
                     weight * (model.ln() + measured / model)
                 })
                 .sum();
-            let unlikely = unlikely + if corner_hz > 0.0 { 2.0 * SHOWN_NATS } else { 0.0 };
+            let unlikely = unlikely + 2.0 * must_bring;
             if unlikely < best.0 {
                 let [white, inputs, in_loop, low] = share;
                 let (inputs, in_loop) = (inputs / peaks[0], in_loop / peaks[1]);
-                best = (unlikely, Noise { white, inputs, in_loop, low, corner_hz, from_hz });
+                best = (unlikely, Noise { white, inputs, in_loop, low, corner_hz, flickers, from_hz });
             }
         }
         best.1

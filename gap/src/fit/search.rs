@@ -57,15 +57,9 @@ const PROMISE: f64 = 8.0;
 /// The same for a nominal parameter beyond its tolerance.
 const PROMISE_OF_SHIFT: f64 = 3.0;
 
-/// Looks through the library.
+/// Looks through the library, from the fit of the nominal parameters alone.
 #[must_use]
-pub fn search(problem: &mut Problem) -> Search {
-    let null = null(problem);
-    search_from(problem, null)
-}
-
-/// The same from the fit of the nominal parameters alone.
-pub(crate) fn search_from(problem: &mut Problem, null: Fit) -> Search {
+pub fn search(problem: &mut Problem, null: Fit) -> Search {
     rebase(problem, &null);
     let (mut fits, glimpses) = sets(problem, &null);
     if let Some(best) = fits.first() {
@@ -87,9 +81,10 @@ pub(crate) fn search_from(problem: &mut Problem, null: Fit) -> Search {
     Search { null, fits, glimpses }
 }
 
-/// The nominal parameters alone.
-pub(crate) fn null(problem: &Problem) -> Fit {
-    refine(problem, &Set::default(), &[], None, Effort::Thorough)
+/// The nominal parameters alone, from where another fit has them.
+#[must_use]
+pub fn null(problem: &Problem, from: Option<&Fit>) -> Fit {
+    refine(problem, &Set::default(), &[], from, Effort::Thorough)
 }
 
 /// Singles, and pairs and triples from the best of them, the best first; and what singles were chosen from.

@@ -116,6 +116,16 @@ impl Whitener {
         self
     }
 
+    /// How sure it is that a channel's noise of low frequency was taken too high, from what whitening leaves of it [nats].
+    pub(crate) fn too_high(&self, whitened: &[f64], period_s: f64) -> f64 {
+        let channels = self.gains.len();
+        let of = |channel: usize| {
+            let series: Vec<f64> = of_channel(whitened, channel, channels).collect();
+            Bands::new(&series, &self.valid, Of::Most, period_s).below_one()
+        };
+        (0..channels).map(of).fold(0.0, f64::max)
+    }
+
     /// The same with what whitens the noise of the rate turn by turn.
     pub(crate) fn with_slips(self, slips: Slips) -> Self {
         Self { slips, ..self }

@@ -22,13 +22,15 @@ const CHANCE: f64 = 1.0;
 pub(crate) const UNSEEN: [f64; 2] = [0.1, 0.04];
 /// Share of the likeliest set's probability from which on another is not told apart from it.
 const RIVAL: f64 = 0.27;
+/// Probability from which on a fuller set is named in the place of the one that is part of it.
+const LIKELIER: f64 = 0.5;
 /// Least probability that is reported.
 const POSSIBLE: f64 = 0.002;
 /// What may be left where the bearing turns around slowly, or all the time: the noise of the rate is less well known
 /// there.
-const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 30.0, strange_scale: 2.5 };
+const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 22.0, strange_scale: 2.0 };
 /// The same where it turns around at once.
-const AT_ONCE: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 22.0, strange_scale: 2.0 };
+const AT_ONCE: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 16.0, strange_scale: 1.5 };
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
 
@@ -163,17 +165,19 @@ pub(crate) fn rivals(ranking: &[SetProbability], own: &[&str]) -> Vec<SetProbabi
 pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Decision {
     let sets = weigh(problem, search, tolerance);
     let probabilities = Probabilities::new(&sets);
-    let worth = |set: &&Weighed| set.nats - set.cost;
-    let fitted = sets.iter().filter(|set| set.fit.is_some() && worth(set) > 0.0);
-    let best = fitted.max_by(|a, b| worth(a).total_cmp(&worth(b)));
+    let limits = Limits::of(problem);
+    let worthy = best(&sets, |set| set.nats - set.cost).map(|best| probabilities.fuller(&sets, best));
+    let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
+    let shown = nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange);
+    // a gap that torques of no effect show is none that the effect has to show
+    let best = worthy.or_else(|| if shown { best(&sets, |set| set.nats - set.rare) } else { None });
     let chosen = best.and_then(|set| set.fit);
     let before = left_over(problem, &search.null.residual);
     let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index].residual));
     let fit = chosen.map_or(&search.null, |index| &search.fits[index]);
-    let strangers = strangers(problem, fit);
-    let strange = strangers.first().map_or(0.0, Stranger::nats);
+    let strangers = nominal.filter(|_| chosen.is_none()).unwrap_or_else(|| strangers(problem, fit));
+    let strange = strongest(&strangers);
     let taken = 0.5 * (search.null.square + search.null.prior - fit.square - fit.prior);
-    let limits = Limits::of(problem);
     let found = chosen.is_some();
     let left = unknown(after, after / before.max(after).max(1e-9), limits.left_over, limits.left_over_scale, found);
     let share = strange / (strange + taken).max(1e-9);
@@ -210,8 +214,29 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     if let Some(stranger) = decision.goes_with() {
         decision.notes.push(format!("what is left goes with {stranger}"));
     }
+    decision.notes.extend(like_a_bias(problem, &decision.found));
     direct(problem, fit, tolerance, &mut decision);
     decision
+}
+
+/// A torque on the float turns the platform as an error of the logged rate seems to: `T / H`.
+fn like_a_bias(problem: &Problem, found: &[Found]) -> Option<String> {
+    let own = found.iter().find(|found| found.effect == "float_torque")?;
+    let rate_radps = own.values[0] / problem.base.config.gyro.angular_momentum_nm_s;
+    Some(format!(
+        "a bias of the logged rate of {rate_radps:.1e} rad/s would look like this float_torque: check the rate at rest"
+    ))
+}
+
+/// The set that was fitted and has most of something, of those that have any.
+fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&Weighed> {
+    let fitted = sets.iter().filter(|set| set.fit.is_some() && of(set) > 0.0);
+    fitted.max_by(|a, b| of(a).total_cmp(&of(b)))
+}
+
+/// What the likeliest of them takes beyond chance [nats].
+fn strongest(strangers: &[Stranger]) -> f64 {
+    strangers.first().map_or(0.0, Stranger::nats)
 }
 
 /// Fills in the effects of a set.
@@ -255,6 +280,15 @@ impl Probabilities {
         let nothing = (-highest).exp();
         let sum = nothing + weights.iter().sum::<f64>();
         Self { sets: weights.iter().map(|weight| weight / sum).collect(), nothing: nothing / sum }
+    }
+
+    /// The set that holds one and more, where that is likelier than everything else together: once there is a gap, a
+    /// further effect need not bring what the first one has to.
+    fn fuller<'a>(&self, sets: &'a [Weighed], best: &'a Weighed) -> &'a Weighed {
+        let fuller = sets.iter().zip(&self.sets).filter(|(set, probability)| {
+            set.fit.is_some() && **probability > LIKELIER && is_part(&best.effects, &set.effects)
+        });
+        fuller.map(|(set, _)| set).next().unwrap_or(best)
     }
 
     /// The most probable first.

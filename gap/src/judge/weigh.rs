@@ -14,6 +14,8 @@ pub(crate) const COST_OF_SHIFT: f64 = 15.0;
 /// rate [nats].
 const OFFSETS: [&str; 3] = ["float_torque", "g_sensitive_float_torque", "direction_asymmetry"];
 const COST_SLOWLY: f64 = 22.0;
+/// Share of it that such an effect must bring to be likelier than not.
+const RARE_SLOWLY: f64 = 0.85;
 /// Evidence from which on an effect is likelier than not, from logs with open answers [nats].
 const RARE: f64 = 7.5;
 pub(crate) const RARE_SHIFT: f64 = 5.0;
@@ -102,7 +104,7 @@ pub(crate) fn costs_of(effects: &[&str], turns_at_once: bool) -> (f64, f64) {
     let beside = RARE_BESIDE * (effects.len() as f64 - 1.0).max(0.0);
     let offsets = if turns_at_once { 0 } else { effects.iter().filter(|effect| OFFSETS.contains(effect)).count() };
     let slowly = COST_SLOWLY * offsets as f64;
-    (COST * added + COST_OF_SHIFT * shifts + slowly, RARE * added + RARE_SHIFT * shifts + beside + 0.5 * slowly)
+    (COST * added + COST_OF_SHIFT * shifts + slowly, RARE * added + RARE_SHIFT * shifts + beside + RARE_SLOWLY * slowly)
 }
 
 /// Whether a set holds all of another one.
