@@ -57,7 +57,7 @@ fn told(pool: &Pool) -> String {
 
 #[test]
 fn an_effect_too_small_for_every_log_is_named_by_all_of_them() {
-    let size = 1.7e-6;
+    let size = 8e-7;
     let logs = diagnoses(&[("cable_spring", vec![size])], Excitation::Manoeuvre, |_, _| ());
     for log in &logs {
         assert_eq!(names(log), Vec::<&str>::new());
@@ -83,7 +83,7 @@ fn an_effect_too_small_for_every_log_is_named_by_all_of_them() {
 #[test]
 fn an_effect_of_one_log_alone_is_not_one_of_the_platform() {
     let mut logs = diagnoses(&[], Excitation::Manoeuvre, |_, _| ());
-    let with = diagnoses_of(1, &[("cable_spring", vec![2.4e-6])], Excitation::Manoeuvre, |_, _| ());
+    let with = diagnoses_of(1, &[("cable_spring", vec![1.4e-6])], Excitation::Manoeuvre, |_, _| ());
     assert_eq!(names(&with[0]), ["cable_spring"]);
     logs[0] = with.into_iter().next().expect("a log");
     let pool = together(&logs);
@@ -144,7 +144,7 @@ fn a_value_that_all_logs_share_is_known_better_than_by_one() {
         .map(|found| found.errors[0].powi(-2))
         .sum();
     let ratio = error * weights.sqrt();
-    assert!((0.7..1.4).contains(&ratio), "{error} is {ratio} times that of {LOGS} logs");
+    assert!((0.7..1.6).contains(&ratio), "{error} is {ratio} times that of {LOGS} logs");
     for (_, signals) in &pool.unseen {
         for own in signals {
             assert!(own.after < 1.05 * own.before, "{}", told(&pool));
