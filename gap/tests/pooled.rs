@@ -57,7 +57,7 @@ fn told(pool: &Pool) -> String {
 
 #[test]
 fn an_effect_too_small_for_every_log_is_named_by_all_of_them() {
-    let size = 5e-7;
+    let size = 7.2e-7;
     let logs = diagnoses(&[("cable_spring", vec![size])], Excitation::Manoeuvre, |_, _| ());
     for log in &logs {
         assert_eq!(names(log), Vec::<&str>::new());
