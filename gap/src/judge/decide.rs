@@ -28,9 +28,9 @@ const LIKELIER: f64 = 0.5;
 const POSSIBLE: f64 = 0.002;
 /// What may be left where the bearing turns around slowly, or all the time: the noise of the rate is less well known
 /// there.
-const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 22.0, strange_scale: 2.0 };
+const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 26.0, strange_scale: 2.0 };
 /// The same where it turns around at once.
-const AT_ONCE: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 16.0, strange_scale: 1.5 };
+const AT_ONCE: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 23.0, strange_scale: 1.5 };
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
 
