@@ -19,6 +19,8 @@ pub const BLOCKS: usize = 10;
 /// Share of the best fit's excess put down to the formulation, and what power of the noise may stand out by.
 const FORMULATION: f64 = 0.012;
 const NOISE_KNOWN: f64 = 1.005;
+/// Share of the rows from which on the bearing turns around most of the time.
+const MOSTLY: f64 = 0.25;
 
 /// Which column is what.
 #[derive(Debug, Clone)]
@@ -90,6 +92,11 @@ impl<'a> Problem<'a> {
             raw.par_iter().chain(more).map(|column| narrow(&self.whitener.apply(&column.signals()))).collect();
         self.gram = gram(&slices(&self.whitened), 0..self.whitener.rows());
         self
+    }
+
+    /// Whether the bearing hardly ever moves one way for long: a platform at rest.
+    pub(crate) fn mostly_turns(&self) -> bool {
+        self.turns.iter().filter(|turns| **turns).count() as f64 > MOSTLY * self.turns.len() as f64
     }
 
     /// The noise that the best fit leaves, over that of the sensors: what is more than the noise is known to is put

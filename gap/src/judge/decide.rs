@@ -19,9 +19,12 @@ const RIVAL: f64 = 0.27;
 const POSSIBLE: f64 = 0.002;
 /// What may be left where the bearing turns around slowly, or all the time: the noise of the rate is less well known
 /// there.
-const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 26.0, strange_scale: 2.0 };
+const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 30.0, strange_scale: 2.5 };
 /// The same where it turns around at once.
 const AT_ONCE: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 23.0, strange_scale: 1.5 };
+/// How much more torques of no effect must take after a stop, and where the bearing turns around most of the time: a wrong
+/// beginning, and the noise of the rate, are like some of them.
+const WARY: f64 = 1.6;
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
 
@@ -38,7 +41,9 @@ pub(crate) struct Limits {
 
 impl Limits {
     pub(crate) fn of(problem: &Problem) -> Self {
-        if problem.turns_at_once { AT_ONCE } else { SLOWLY }
+        let limits = if problem.turns_at_once { AT_ONCE } else { SLOWLY };
+        let wary = if problem.record.comes_near_a_stop() || problem.mostly_turns() { WARY } else { 1.0 };
+        Self { strange: wary * limits.strange, ..limits }
     }
 }
 

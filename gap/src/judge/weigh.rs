@@ -16,6 +16,8 @@ const OFFSETS: [&str; 3] = ["float_torque", "g_sensitive_float_torque", "directi
 const COST_SLOWLY: f64 = 22.0;
 /// Share of it that such an effect must bring to be likelier than not.
 const RARE_SLOWLY: f64 = 0.85;
+/// How much more where the bearing turns around most of the time: its friction is as good as unknown there.
+const TURNING: f64 = 2.0;
 /// Evidence from which on an effect is likelier than not, from logs with open answers [nats].
 const RARE: f64 = 7.5;
 pub(crate) const RARE_SHIFT: f64 = 5.0;
@@ -93,7 +95,8 @@ pub(crate) fn names(fit: &Fit) -> Vec<&'static str> {
 
 fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
     let effects: Vec<&str> = set.iter().map(|&index| problem.candidates[index].effect).collect();
-    costs_of(&effects, problem.turns_at_once)
+    let (cost, rare) = costs_of(&effects, problem.turns_at_once);
+    if problem.mostly_turns() { (TURNING * cost, TURNING * rare) } else { (cost, rare) }
 }
 
 /// What effects must bring to be named, and from where on they are likelier than not; whether bearings turn around at

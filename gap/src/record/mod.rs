@@ -139,6 +139,11 @@ impl Record {
         Begin::at(physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque))
     }
 
+    /// Whether the float touches a stop, or may have.
+    pub(crate) fn comes_near_a_stop(&self) -> bool {
+        self.away_from_stop.is_some()
+    }
+
     /// The longest run of rows away from the stop as a log of its own, if it is long enough; none where the stop was not
     /// reached.
     pub(crate) fn away_from_stop(&self, bearing: &bearing::Config) -> Option<Self> {
