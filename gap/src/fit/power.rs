@@ -6,8 +6,9 @@
 //!
 //! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
 //! to the channel), n the pick-off's noise as the servo answers it ([`super::shapes`]), b noise of low frequency with
-//! its corner and its slope: s = 1 is flicker, which has no corner in the log or one where it ends. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so
-//! that what happens now and then is no noise either.
+//! its corner and its slope: s = 1 is flicker, which has no corner in the log or one where it ends. Only what has one of
+//! these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so that what happens now and then is no
+//! noise either.
 
 use super::plans::Plans;
 use super::shapes::Shapes;

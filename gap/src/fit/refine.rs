@@ -62,8 +62,7 @@ impl Fit {
     /// Whether the size of a member of the set is zero within three standard errors.
     #[must_use]
     pub fn is_idle(&self, place: usize) -> bool {
-        let sizes = Effect::from_name(self.effects[place]).map_or(1, Effect::sizes);
-        self.values[place].iter().zip(&self.errors[place]).take(sizes).all(|(value, error)| value.abs() < 3.0 * error)
+        is_idle(self.effects[place], &self.values[place], &self.errors[place])
     }
 
     /// Where the fit stands.
@@ -71,6 +70,12 @@ impl Fit {
         let state = self.begin.state.iter().zip(&problem.begin.state).take(problem.columns.begin).map(|(a, b)| a - b);
         Point { values: self.values.clone(), shifts: self.shifts.clone(), state: state.collect() }
     }
+}
+
+/// Whether the size of an effect is zero within three standard errors.
+pub(crate) fn is_idle(effect: &str, values: &[f64], errors: &[f64]) -> bool {
+    let sizes = Effect::from_name(effect).map_or(1, Effect::sizes);
+    values.iter().zip(errors).take(sizes).all(|(value, error)| value.abs() < 3.0 * error)
 }
 
 /// How far a fit is taken.

@@ -11,7 +11,7 @@ use super::refine::Effort;
 use super::refit::rebase;
 use super::signals::peak;
 use super::{Fit, Problem, refine};
-use crate::library::Candidate;
+use crate::library::{Candidate, PROMISE};
 
 /// A set of candidates, by index.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -48,14 +48,8 @@ pub struct Glimpse {
 /// Refined singles, and refined extensions of each of the best.
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
-/// Least share of the size at which an effect is tried that it may have.
-const LEAST_SECANT: f64 = 0.003;
 /// A predicted torque that comes so near the highest that was measured, over it, may have met a ceiling.
 const NEAR: f64 = 0.98;
-/// Evidence that an extension must promise to be looked at [nats].
-const PROMISE: f64 = 8.0;
-/// The same for a nominal parameter beyond its tolerance.
-const PROMISE_OF_SHIFT: f64 = 3.0;
 
 /// Looks through the library, from the fit of the nominal parameters alone.
 #[must_use]
@@ -195,7 +189,7 @@ fn polish(problem: &Problem, fit: &mut Fit) {
 }
 
 fn promising(problem: &Problem, extension: &Extension) -> bool {
-    extension.gain > if problem.candidates[extension.index].releases.is_empty() { PROMISE } else { PROMISE_OF_SHIFT }
+    problem.candidates[extension.index].is_promised(extension.gain)
 }
 
 /// By evidence under the noise that the best of them leaves.
@@ -260,19 +254,15 @@ fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
             let Some(solution) = solve(&problem.gram, &drive, &wide, &wide_precision) else {
                 return hopeless(index);
             };
-            let amplitudes = if candidate.releases.is_empty() {
+            let amplitudes: Vec<f64> = if candidate.releases.is_empty() {
                 let from = wide.len() - candidate.probes.len();
                 (from..wide.len()).map(|place| solution.coefficients[place]).collect()
             } else {
                 vec![0.0; candidate.releases.len()]
             };
-            let first = amplitudes.first().copied().unwrap_or(0.0);
-            let sane = match candidate.effect {
-                "loop_delay" | "presliding" | "dead_zone" | "torque_saturation" => first > LEAST_SECANT && first < 8.0,
-                // there is no inertia below zero
-                "flexible_mode" => first > 0.0,
-                _ => true,
-            };
+            // there is no inertia below zero
+            let below_zero = candidate.effect == "flexible_mode" && amplitudes.first().is_none_or(|own| *own <= 0.0);
+            let sane = candidate.holds_at(&amplitudes) && !below_zero;
             let sizes = (wide.len() - candidate.probes.len()..wide.len()).zip(&candidate.prior);
             let scale_free: f64 =
                 sizes.map(|(place, (_, sigma))| of_any_scale(*sigma, solution.covariance[(place, place)].sqrt())).sum();

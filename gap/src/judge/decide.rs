@@ -13,6 +13,8 @@ use crate::record::Signal;
 
 /// Probability of a cause that nothing shows, without and with an effect that explains the log.
 pub(crate) const UNSEEN: [f64; 2] = [0.1, 0.04];
+/// Unknown is the verdict from here on, without and with an effect.
+pub(crate) const UNEXPLAINED: [f64; 2] = [0.5, 0.6];
 /// Share of the likeliest set's probability from which on another is not told apart from it.
 const RIVAL: f64 = 0.27;
 /// Least probability that is reported.
@@ -183,7 +185,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     };
     if let Some(best) = best {
         name(problem, fit, best, &mut decision);
-        decision.verdict = if unknown > 0.6 {
+        decision.verdict = if unknown > UNEXPLAINED[1] {
             decision.found.clear();
             decision.chosen = None;
             Verdict::Unexplained
@@ -194,7 +196,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         } else {
             Verdict::CannotTell
         };
-    } else if unknown > 0.5 {
+    } else if unknown > UNEXPLAINED[0] {
         decision.verdict = Verdict::Unexplained;
     }
     decision.alternatives = decision.others();
@@ -216,7 +218,7 @@ fn like_a_bias(problem: &Problem, found: &[Found]) -> Option<String> {
 }
 
 /// The set that was fitted and has most of something, of those that have any.
-fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&Weighed> {
+pub(crate) fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&Weighed> {
     let fitted = sets.iter().filter(|set| set.fit.is_some() && of(set) > 0.0);
     fitted.max_by(|a, b| of(a).total_cmp(&of(b)))
 }

@@ -64,18 +64,8 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
             Weighed { effects: names(fit), fit: Some(index), nats, cost, rare }
         })
         .collect();
-    // what a set has more than a smaller one must be worth it
     let excess = (search.null.square - closest.square).max(1.0);
-    for (index, fit) in search.fits.iter().enumerate() {
-        for (other, smaller) in search.fits.iter().enumerate() {
-            let worthless =
-                is_part(&smaller.effects, &fit.effects) && smaller.square - fit.square < LEAST_SHARE * excess;
-            let most = all[other].nats - all[other].cost + all[index].cost - 1.0;
-            if worthless && all[index].nats > most {
-                all[index].nats = most;
-            }
-        }
-    }
+    worth_their_more(&mut all, LEAST_SHARE * excess, |index| search.fits[index].square);
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;
         if !all.iter().any(|set| set.effects == [effect]) {
@@ -84,6 +74,20 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         }
     }
     all
+}
+
+/// What a set has more than a smaller one must be worth it: one that takes less than so much more is less than that one is.
+/// The sets are those that were fitted, in the order of what they leave.
+pub(crate) fn worth_their_more(sets: &mut [Weighed], least: f64, left: impl Fn(usize) -> f64) {
+    for index in 0..sets.len() {
+        for other in 0..sets.len() {
+            let worthless = is_part(&sets[other].effects, &sets[index].effects) && left(other) - left(index) < least;
+            let most = sets[other].nats - sets[other].cost + sets[index].cost - 1.0;
+            if worthless && sets[index].nats > most {
+                sets[index].nats = most;
+            }
+        }
+    }
 }
 
 /// Names of a fit's effects, in order.

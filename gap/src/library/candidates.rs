@@ -19,6 +19,27 @@ pub struct Candidate {
     pub siblings: usize,
 }
 
+/// Evidence that linear equations must promise for a fit, and for that of a nominal parameter beyond its tolerance [nats].
+pub(crate) const PROMISE: f64 = 8.0;
+const PROMISE_OF_SHIFT: f64 = 3.0;
+/// Effects that are not linear in their size, and the least and the largest share of the size at which they are tried that
+/// equations may give them.
+const NOT_LINEAR: [&str; 4] = ["loop_delay", "presliding", "dead_zone", "torque_saturation"];
+const SECANT: [f64; 2] = [0.003, 8.0];
+
+impl Candidate {
+    /// Whether linear equations promise enough for a fit.
+    pub(crate) fn is_promised(&self, gain: f64) -> bool {
+        gain > if self.releases.is_empty() { PROMISE } else { PROMISE_OF_SHIFT }
+    }
+
+    /// Whether linear equations that give it such amplitudes may be believed.
+    pub(crate) fn holds_at(&self, amplitudes: &[f64]) -> bool {
+        let near = |first: &f64| *first > SECANT[0] && *first < SECANT[1];
+        !NOT_LINEAR.contains(&self.effect) || amplitudes.first().is_some_and(near)
+    }
+}
+
 /// Limits of the torque that are tried, over the largest torque.
 const CEILINGS_SEEN: [f64; 6] = [1.0, 0.985, 0.965, 0.93, 0.85, 0.7];
 const CEILINGS_UNSEEN: [f64; 16] =

@@ -11,10 +11,6 @@ use crate::fit::{Hypothesis, Linear, Point};
 use crate::judge::RARE_SHIFT;
 use crate::library::{Candidate, apply};
 
-/// Least and largest share of the size at which an effect is tried that it may have, where it is not linear.
-const SECANT: [f64; 2] = [0.003, 8.0];
-const NOT_LINEAR: [&str; 4] = ["loop_delay", "presliding", "dead_zone", "torque_saturation"];
-
 /// One effect more.
 #[derive(Debug, Clone)]
 pub(super) struct Promise {
@@ -23,6 +19,13 @@ pub(super) struct Promise {
     pub(super) gain: f64,
     /// Values to begin with.
     pub(super) values: Vec<f64>,
+}
+
+impl Promise {
+    /// For a fit.
+    pub(super) fn is_enough(&self) -> bool {
+        self.candidate.is_promised(self.gain)
+    }
 }
 
 /// Every way in which an effect may show, those of all logs.
@@ -81,8 +84,7 @@ pub(super) fn promises(materials: &[Material], fitted: &Fitted, library: &[Candi
                 .collect();
             let Some(joint) = solve(&locals, &parameters, &own) else { continue };
             let amplitudes = amplitudes(&joint, &locals, &parameters);
-            let linear = !NOT_LINEAR.contains(&candidate.effect);
-            if !linear && !amplitudes.first().is_some_and(|own| (SECANT[0]..SECANT[1]).contains(own)) {
+            if !candidate.holds_at(&amplitudes) {
                 continue;
             }
             let times = if apart { materials.len() as f64 } else { 1.0 };

@@ -30,15 +30,12 @@ mod weigh;
 use gimbal_model_file::ModelFile;
 
 use crate::diagnose::Diagnosis;
-use crate::judge::{Probabilities, SetProbability, Verdict, Weighed, Yardstick, rivals};
+use crate::judge::{Probabilities, SetProbability, UNEXPLAINED, Verdict, Weighed, Yardstick, best, rivals};
 use climb::Fitted;
 use material::Material;
 use parameters::Unit;
 pub use repeats::Repeat;
 pub use values::Shared;
-
-/// Unknown is the verdict from here on, with and without an effect.
-const UNEXPLAINED: [f64; 2] = [0.5, 0.6];
 
 /// A set of effects over all logs.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,9 +115,7 @@ pub fn pool_step_by_step(diagnoses: &[Diagnosis], model: &ModelFile, mut step: i
         return refused(logs, repeats);
     };
     let weighed = weigh::weigh(&materials, &found.null, &found.fits, &found.promises, &model.tolerance);
-    let worth = |set: &&Weighed| set.nats - set.cost;
-    let fitted = weighed.iter().filter(|set| set.fit.is_some() && worth(set) > 0.0);
-    let best = fitted.max_by(|a, b| worth(a).total_cmp(&worth(b)));
+    let best = best(&weighed, |set| set.nats - set.cost);
     let fit = best.and_then(|set| set.fit).map_or(&found.null, |index| &found.fits[index]);
     let names = |log: &usize| diagnoses[*log].decision.as_ref().is_some_and(|own| !own.found.is_empty());
     let explained: Vec<usize> = logs.iter().copied().filter(names).collect();

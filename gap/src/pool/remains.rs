@@ -1,8 +1,9 @@
 //! What the logs keep when all of them are fitted together: whether it goes with something that no effect of the
 //! library is asked for, in one log or in all of them.
 //!
-//! A log's remains count as in its own diagnosis; that it is the strangest of n takes ln n nats off. What torques of no effect take is added up over the logs too: of n logs
-//! without one, chance adds up to the root of n times what it makes of one.
+//! A log's remains count as in its own diagnosis; that it is the strangest of n takes ln n nats off. What torques of no
+//! effect take is added up over the logs too: of n logs without one, chance adds up to the root of n times what it makes of
+//! one.
 
 use super::climb::Fitted;
 use super::material::Material;

@@ -11,7 +11,6 @@ use super::sharing::fitted;
 use super::weigh::weigh;
 use crate::diagnose::Diagnosis;
 use crate::fit::{Point, Tried};
-use crate::library::releases;
 
 /// Sets of the logs' own searches, effects by themselves, extensions of the best.
 const OWN_SETS: usize = 6;
@@ -19,10 +18,6 @@ const SINGLES: usize = 4;
 const EXTENSIONS: usize = 3;
 /// Least probability that a log gives a set that it asks the others about.
 const PROBABLE: f64 = 0.05;
-/// Evidence that an effect must promise to be fitted, and a nominal parameter beyond its tolerance [nats].
-const PROMISE: f64 = 8.0;
-const PROMISE_OF_SHIFT: f64 = 3.0;
-
 /// All that was fitted.
 pub(super) struct Found {
     pub(super) null: Fitted,
@@ -48,7 +43,7 @@ pub(super) fn found(
         try_set(materials, &null, &tried, &mut fits);
         step();
     }
-    for promise in singles.iter().filter(|promise| is_promising(promise)).take(SINGLES) {
+    for promise in singles.iter().filter(|promise| promise.is_enough()).take(SINGLES) {
         extend(materials, &null, promise, &mut fits);
         step();
     }
@@ -63,17 +58,13 @@ pub(super) fn found(
         }
         let from = fits[best].clone();
         for promise in
-            promises(materials, &from, &library).iter().filter(|promise| is_promising(promise)).take(EXTENSIONS)
+            promises(materials, &from, &library).iter().filter(|promise| promise.is_enough()).take(EXTENSIONS)
         {
             extend(materials, &from, promise, &mut fits);
             step();
         }
     }
     Some(Found { null, fits, promises: singles })
-}
-
-fn is_promising(promise: &Promise) -> bool {
-    promise.gain > if releases(promise.candidate.effect).is_empty() { PROMISE } else { PROMISE_OF_SHIFT }
 }
 
 /// The nominal parameters alone, from the middle of what the logs found each by itself.

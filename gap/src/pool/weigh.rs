@@ -1,15 +1,15 @@
 //! What every set is worth to all logs together, by the rules for one log: the same costs, the same reasons against it.
 
 use gimbal_model_file::Tolerance;
-use gimbal_plant::Effect;
 
 use super::climb::Fitted;
 use super::extend::Promise;
 use super::material::Material;
 use super::parameters::Unit;
+use crate::fit::is_idle;
 use crate::judge::{
     HELPS, LEAST_SHARE, NEVER, Weighed, at_a_bound, beyond, carried_by_one_log, carried_by_one_stretch, costs_of,
-    is_part,
+    is_part, worth_their_more,
 };
 
 /// Sets in the order of their fits, then effects that were only looked at.
@@ -35,16 +35,7 @@ pub(super) fn weigh(
     let left = |fitted: &Fitted| fitted.squares.iter().sum::<f64>() + fitted.prior;
     let closest = fits.iter().chain([null]).map(left).fold(f64::MAX, f64::min);
     let excess = (left(null) - closest).max(1.0);
-    for (index, fitted) in fits.iter().enumerate() {
-        for (other, smaller) in fits.iter().enumerate() {
-            let worthless = is_part(&smaller.effects.names, &fitted.effects.names)
-                && left(smaller) - left(fitted) < LEAST_SHARE * excess;
-            let most = all[other].nats - all[other].cost + all[index].cost - 1.0;
-            if worthless && all[index].nats > most {
-                all[index].nats = most;
-            }
-        }
-    }
+    worth_their_more(&mut all, LEAST_SHARE * excess, |index| left(&fits[index]));
     for promise in promises {
         let effects = vec![promise.candidate.effect];
         if !all.iter().any(|set| set.effects == effects) {
@@ -97,12 +88,6 @@ fn against(materials: &[Material], null: &Fitted, fits: &[Fitted], fitted: &Fitt
         }
     };
     fitted.effects.names.iter().enumerate().map(of).sum()
-}
-
-/// Whether the size of an effect is zero within three standard errors.
-fn is_idle(effect: &str, values: &[f64], errors: &[f64]) -> bool {
-    let sizes = Effect::from_name(effect).map_or(1, Effect::sizes);
-    values.iter().zip(errors).take(sizes).all(|(value, error)| value.abs() < 3.0 * error)
 }
 
 /// Whether a set is worth more with an effect than without it, though size and shape stand for each other.
