@@ -48,6 +48,8 @@ pub struct Glimpse {
 /// Refined singles, and refined extensions of each of the best.
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
+/// Formulations of an effect that are fitted.
+const FORMULATIONS: usize = 2;
 /// A predicted torque that comes so near the highest that was measured, over it, may have met a ceiling.
 const NEAR: f64 = 0.98;
 
@@ -296,15 +298,23 @@ fn best_by_effect(problem: &Problem, mut order: Vec<Extension>, count: usize) ->
 
 fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
     let candidate = &problem.candidates[extension.index];
-    // a chord of pre-sliding misleads: its settings are tried as they are
-    let as_it_is = if candidate.effect == "presliding" { setting(problem, from, candidate.effect) } else { None };
-    let (index, own) = as_it_is.unwrap_or_else(|| (extension.index, candidate.values(&extension.amplitudes)));
-    let (set, values) = extended(from, index, own);
-    refine(problem, &set, &values, Some(from), Effort::Quick)
+    let fitted = |index: usize, own: Vec<f64>| {
+        let (set, values) = extended(from, index, own);
+        refine(problem, &set, &values, Some(from), Effort::Quick)
+    };
+    if candidate.effect != "presliding" {
+        return fitted(extension.index, candidate.values(&extension.amplitudes));
+    }
+    // a chord of pre-sliding misleads: its settings are tried as they are, and before a fit its formulations are hardly
+    // told apart
+    let formulations = settings(problem, from, candidate.effect);
+    let fits = formulations.into_par_iter().map(|(index, own)| fitted(index, own));
+    let closest = fits.min_by(|a, b| (a.square + a.prior).total_cmp(&(b.square + b.prior)));
+    closest.unwrap_or_else(|| fitted(extension.index, candidate.values(&extension.amplitudes)))
 }
 
-/// The setting of an effect's candidates that leaves least beside a fit.
-fn setting(problem: &Problem, from: &Fit, effect: &str) -> Option<(usize, Vec<f64>)> {
+/// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does.
+fn settings(problem: &Problem, from: &Fit, effect: &str) -> Vec<(usize, Vec<f64>)> {
     let tried = |(index, candidate): (usize, &Candidate)| {
         let own = candidate.probes[0].0.clone();
         let (set, values) = extended(from, index, own.clone());
@@ -312,7 +322,16 @@ fn setting(problem: &Problem, from: &Fit, effect: &str) -> Option<(usize, Vec<f6
         (left(problem, &set, &point), (index, own))
     };
     let all = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
-    all.map(tried).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, best)| best)
+    let mut all: Vec<(f64, (usize, Vec<f64>))> = all.map(tried).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut seen: Vec<Option<u64>> = Vec::new();
+    all.retain(|(_, (_, own))| {
+        let formulation = own.get(1).map(|way| way.to_bits());
+        let new = !seen.contains(&formulation);
+        seen.push(formulation);
+        new
+    });
+    all.into_iter().take(FORMULATIONS).map(|(_, setting)| setting).collect()
 }
 
 /// A fit's set and values with one candidate more.

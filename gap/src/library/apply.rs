@@ -14,6 +14,7 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
             physics.friction.presliding_rad = v(0);
             // a second value says how it is formulated
             physics.friction.builds_up = match v(1) {
+                way if way > 2.5 => BuildUp::Sprung,
                 way if way > 1.5 => BuildUp::LoadAlone,
                 way if way > 0.5 => BuildUp::OnClamp,
                 _ => BuildUp::InPlaceOfClamp,

@@ -7,6 +7,7 @@ use super::inputs::turned;
 use super::lanes::{Lanes, side, within};
 use super::now::Now;
 use super::physics::BuildUp;
+use super::sprung::{Chain, Forces};
 
 const GRAVITY_MPS2: f64 = 9.806_65;
 
@@ -197,6 +198,25 @@ impl<'a, const L: usize> Law<'a, L> {
         }
         let w = left(zeta);
         [w, zeta, (1.0 - clamped) * zeta + clamped * within(w / slip, 1.0)]
+    }
+
+    /// Whether friction is behind springs.
+    pub(super) fn is_sprung(&self, lane: usize) -> bool {
+        self.physics[lane].friction.builds_up == BuildUp::Sprung
+    }
+
+    /// The springs' build-up of one lane over a step: as for the others, and the springs' forces.
+    pub(super) fn sprung(
+        &self,
+        lane: usize,
+        before: f64,
+        forces: Forces,
+        [rate, brake, level, step_s]: [f64; 4],
+    ) -> ([f64; 3], Forces) {
+        let along = self.physics[lane].friction.presliding_rad;
+        let chain = Chain::new([along, self.slip_radps[lane]], forces, before, step_s);
+        let (w, share, forces) = chain.solve(rate, brake * level);
+        ([w, share, share], forces)
     }
 
     /// Torques on the gimbal but for the bearings', and what the motor fails to give of its command.

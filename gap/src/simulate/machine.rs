@@ -11,6 +11,7 @@ use super::lanes::Lanes;
 use super::law::Law;
 use super::now::Now;
 use super::running::Running;
+use super::sprung::ELEMENTS;
 use super::{Begin, Inputs, Prediction};
 
 /// How a full step is divided: where nothing turns around, where friction turns around slowly, and where it turns
@@ -124,7 +125,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let hysteresis = Lanes::each(|lane| begin[lane].hysteresis);
         let others = self.law.others(now, &x, hysteresis, |x| self.command_nm(x));
         let u = [friction + others, self.law.float_nm(now), self.law.seen(x[THETA]) - x[THETA]];
-        Running { x, u, w, friction, zeta, hysteresis, stop: [0; L] }
+        Running { x, u, w, friction, zeta, sprung: [zeta; ELEMENTS], hysteresis, stop: [0; L] }
     }
 
     /// One row: full steps where nothing turns around, shorter ones elsewhere.
@@ -284,12 +285,19 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         state.hysteresis = hysteresis;
     }
 
-    /// Dahl's build-up: w that its friction leaves, share built up, share of all friction.
-    fn build_up(&self, state: &Running<N, L>, [rate, brake, level]: [Lanes<L>; 3], step_s: f64) -> [Lanes<L>; 3] {
+    /// Friction that builds up: w that it leaves, share built up, share of all friction.
+    fn build_up(&self, state: &mut Running<N, L>, [rate, brake, level]: [Lanes<L>; 3], step_s: f64) -> [Lanes<L>; 3] {
         let mut built = [Lanes::all(0.0); 3];
         for lane in 0..L {
-            let from = [state.w[lane], state.zeta[lane]];
-            let of_lane = self.law.build_up(lane, from, [rate[lane], brake[lane], level[lane], step_s]);
+            let onto = [rate[lane], brake[lane], level[lane], step_s];
+            let of_lane = if self.law.is_sprung(lane) {
+                let from = state.sprung.map(|force| force[lane]);
+                let (of_lane, forces) = self.law.sprung(lane, state.w[lane], from, onto);
+                state.sprung.iter_mut().zip(forces).for_each(|(sprung, force)| sprung[lane] = force);
+                of_lane
+            } else {
+                self.law.build_up(lane, [state.w[lane], state.zeta[lane]], onto)
+            };
             built.iter_mut().zip(of_lane).for_each(|(built, value)| built[lane] = value);
         }
         built

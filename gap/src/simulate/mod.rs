@@ -15,6 +15,7 @@ mod now;
 mod physics;
 mod predict;
 mod running;
+mod sprung;
 
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;

@@ -76,6 +76,8 @@ pub enum BuildUp {
     OnClamp,
     /// The load's friction alone, in the place of its clamp.
     LoadAlone,
+    /// All of it, behind a chain of springs that yield.
+    Sprung,
 }
 
 /// Loop of the cable.

@@ -250,6 +250,12 @@ mod tests {
                 apply(effect, &entry.typical(), &mut own);
                 all.push(own);
             }
+            for way in [1.0, 2.0, 3.0] {
+                let mut own = base.clone();
+                own.friction.load_factor += share;
+                apply("presliding", &[1e-5, way], &mut own);
+                all.push(own);
+            }
         }
         let variant = |physics: &Physics| Variant {
             physics: physics.clone(),

@@ -2,6 +2,7 @@
 
 use super::chain::INPUTS;
 use super::lanes::Lanes;
+use super::sprung::ELEMENTS;
 
 /// The state of all predictions.
 #[derive(Debug, Clone, Copy)]
@@ -14,6 +15,8 @@ pub(super) struct Running<const N: usize, const L: usize> {
     pub(super) friction: Lanes<L>,
     /// Share of friction built up, with `presliding`.
     pub(super) zeta: Lanes<L>,
+    /// Forces of the springs before the friction, where there are any.
+    pub(super) sprung: [Lanes<L>; ELEMENTS],
     pub(super) hysteresis: Lanes<L>,
     /// -1, 0, 1.
     pub(super) stop: [i8; L],
@@ -28,6 +31,7 @@ impl<const N: usize, const L: usize> Running<N, L> {
             w: Lanes::all(self.w[lane]),
             friction: Lanes::all(self.friction[lane]),
             zeta: Lanes::all(self.zeta[lane]),
+            sprung: self.sprung.map(|sprung| Lanes::all(sprung[lane])),
             hysteresis: Lanes::all(self.hysteresis[lane]),
             stop: [self.stop[lane]],
         }
@@ -40,6 +44,7 @@ impl<const N: usize, const L: usize> Running<N, L> {
         self.w[lane] = one.w[0];
         self.friction[lane] = one.friction[0];
         self.zeta[lane] = one.zeta[0];
+        self.sprung.iter_mut().zip(&one.sprung).for_each(|(all, one)| all[lane] = one[0]);
         self.hysteresis[lane] = one.hysteresis[0];
         self.stop[lane] = one.stop[0];
     }
