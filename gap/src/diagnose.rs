@@ -126,7 +126,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     };
     let record = problem.record;
     let tried = [&search.null].into_iter().chain(&search.fits).map(|fit| Tried::new(&problem, fit)).collect();
-    let asked = Asked { known, temper: problem.formulation(search.closest()), tried };
+    let asked = Asked { known, temper: search.temper(&problem), tried };
     let mut decision = decide(&problem, &search, &model.tolerance);
     decision.notes.extend(imitated);
     let channels = record.channels.len();

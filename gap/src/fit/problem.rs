@@ -16,9 +16,13 @@ use crate::simulate::{Begin, Physics};
 
 /// Time blocks.
 pub const BLOCKS: usize = 10;
-/// Share of the best fit's excess put down to the formulation, and what power of the noise may stand out by.
+/// Share of the best fit's excess put down to the formulation; what power of the noise may stand out by, and by how many
+/// standard deviations of chance.
 const FORMULATION: f64 = 0.012;
 const NOISE_KNOWN: f64 = 1.005;
+const BY_CHANCE: f64 = 3.0;
+/// Share of the gap that a formulation may leave.
+const MAY_LEAVE: f64 = 0.02;
 /// Share of the rows from which on the bearing turns around most of the time.
 const MOSTLY: f64 = 0.25;
 
@@ -100,11 +104,15 @@ impl<'a> Problem<'a> {
     }
 
     /// The noise that the best fit leaves, over that of the sensors: what is more than the noise is known to is put
-    /// down, in part, to how its effects are formulated.
-    pub(crate) fn formulation(&self, best: &Fit) -> f64 {
+    /// down, in part, to how its effects are formulated, as far as chance does not make it, or their formulation may leave
+    /// it of what they take away.
+    pub(crate) fn formulation(&self, best: &Fit, null: &Fit) -> f64 {
         let noise = self.roughness(&best.residual).max(1.0);
-        let excess = best.square - NOISE_KNOWN * noise * self.whitener.count() as f64;
-        (FORMULATION * excess).max(noise)
+        let count = self.whitener.count() as f64;
+        let excess = best.square - noise * NOISE_KNOWN * count;
+        let by_chance = noise * BY_CHANCE * (2.0 * count).sqrt();
+        let left = MAY_LEAVE * (null.square - best.square);
+        (FORMULATION * excess.min(left.max(excess - by_chance))).max(noise)
     }
 
     /// Power of what a residual does from row to row: that is noise, whatever effects leave.

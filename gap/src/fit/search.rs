@@ -34,6 +34,12 @@ impl Search {
     pub fn closest(&self) -> &Fit {
         self.fits.iter().fold(&self.null, |best, fit| if fit.square < best.square { fit } else { best })
     }
+
+    /// The noise that it leaves, over that of the sensors.
+    #[must_use]
+    pub fn temper(&self, problem: &Problem) -> f64 {
+        problem.formulation(self.closest(), &self.null)
+    }
 }
 
 /// What an effect would add to the nominal parameters, without a fit.
@@ -68,8 +74,8 @@ pub fn search(problem: &mut Problem, null: Fit) -> Search {
     let close = |(place, fit): &(usize, &mut Fit)| *place < POLISHED && gain(fit) >= least;
     let last: Vec<(usize, &mut Fit)> = fits.iter_mut().enumerate().filter(close).collect();
     last.into_par_iter().for_each(|(_, fit)| polish(problem, fit));
-    sort(problem, &mut fits);
-    without_idle(problem, &mut fits);
+    sort(problem, &null, &mut fits);
+    without_idle(problem, &null, &mut fits);
     let (null, moved) = from_there(problem, null, &fits);
     // what single effects seemed to bring may have been the way that the nominal parameters found meanwhile
     let glimpses =
@@ -98,7 +104,7 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
             .filter(|extension| promising(problem, extension))
             .map(|extension| extend(problem, null, extension)),
     );
-    sort(problem, &mut fits);
+    sort(problem, null, &mut fits);
     for size in 1..3 {
         let seeds: Vec<&Fit> =
             fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
@@ -116,7 +122,7 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
                 fits.push(fit);
             }
         }
-        sort(problem, &mut fits);
+        sort(problem, null, &mut fits);
     }
     (fits, glimpses)
 }
@@ -145,7 +151,7 @@ fn seen(extensions: &[Extension]) -> Vec<Glimpse> {
 }
 
 /// A set with a member that is zero within its error was only the better way down: the set without it starts there.
-fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
+fn without_idle(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>) {
     let idle: Vec<(usize, usize)> = fits
         .iter()
         .enumerate()
@@ -175,7 +181,7 @@ fn without_idle(problem: &Problem, fits: &mut Vec<Fit>) {
             fits.push(fit);
         }
     }
-    sort(problem, fits);
+    sort(problem, null, fits);
 }
 
 /// Hypotheses that are fitted until nothing moves any more: so many, with at least this share of the best one's gain.
@@ -195,9 +201,9 @@ fn promising(problem: &Problem, extension: &Extension) -> bool {
 }
 
 /// By evidence under the noise that the best of them leaves.
-fn sort(problem: &Problem, fits: &mut [Fit]) {
+fn sort(problem: &Problem, null: &Fit, fits: &mut [Fit]) {
     let Some(best) = fits.iter().min_by(|a, b| a.square.total_cmp(&b.square)) else { return };
-    let temper = problem.formulation(best);
+    let temper = problem.formulation(best, null);
     fits.sort_by(|a, b| b.evidence(temper).total_cmp(&a.evidence(temper)));
 }
 

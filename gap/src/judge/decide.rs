@@ -3,13 +3,12 @@
 use gimbal_model_file::Tolerance;
 use gimbal_plant::Effect;
 
-use super::comb;
 use super::left_over::left_over;
 use super::probability::{Probabilities, SetProbability};
+use super::samples::{pickoff_step, stop_change};
 use super::strange::{Stranger, strangers};
-use super::weigh::{BEYOND, Weighed, holds, weigh};
+use super::weigh::{Weighed, best, holds, weigh};
 use crate::fit::{Fit, Problem, Search};
-use crate::record::Signal;
 
 /// Probability of a cause that nothing shows, without and with an effect that explains the log.
 pub(crate) const UNSEEN: [f64; 2] = [0.1, 0.04];
@@ -157,8 +156,10 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let limits = Limits::of(problem);
     let worthy = best(&sets, |set| set.nats - set.cost).map(|best| probabilities.fuller(&sets, best));
     let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
-    let shown = nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange);
-    // a gap that torques of no effect show is none that the effect has to show
+    let shown = nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange)
+        || stop_change(problem, 1.0, tolerance).is_some()
+        || pickoff_step(problem, &search.null).is_some();
+    // a gap that torques of no effect show, or the samples, is none that the effect has to show
     let best = worthy.or_else(|| if shown { best(&sets, |set| set.nats - set.rare) } else { None });
     let chosen = best.and_then(|set| set.fit);
     let before = left_over(problem, &search.null.residual);
@@ -217,12 +218,6 @@ fn like_a_bias(problem: &Problem, found: &[Found]) -> Option<String> {
     ))
 }
 
-/// The set that was fitted and has most of something, of those that have any.
-pub(crate) fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&Weighed> {
-    let fitted = sets.iter().filter(|set| set.fit.is_some() && of(set) > 0.0);
-    fitted.max_by(|a, b| of(a).total_cmp(&of(b)))
-}
-
 /// What the likeliest of them takes beyond chance [nats].
 fn strongest(strangers: &[Stranger]) -> f64 {
     strangers.first().map_or(0.0, Stranger::nats)
@@ -274,18 +269,10 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
             decision.verdict = Verdict::PartlyExplained;
         }
     };
-    if let Some(plateau) = problem.record.plateau_rad {
-        let change = plateau / (problem.stop_rad * pickoff) - 1.0;
-        if change.abs() > BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale) {
-            // the pick-off that shows it has a scale of its own
-            let scale = problem.nuisance("pickoff_scale").map_or(0.0, |place| problem.nuisances[place].sigma);
-            add("stop_angle", change, (1.0 + change) * scale.hypot(problem.noise[0] / plateau), 0.95);
-        }
+    if let Some((change, error)) = stop_change(problem, pickoff, tolerance) {
+        add("stop_angle", change, error, 0.95);
     }
-    if let Some(theta) = problem.record.channel(Signal::GyroAngle)
-        && let Some(step) =
-            comb::step_rad(&theta.values, &fit.prediction.gyro_angle_rad, &theta.valid, problem.noise[0])
-    {
+    if let Some(step) = pickoff_step(problem, fit) {
         add("pickoff_quantisation", step, 1e-3 * step, 0.97);
     }
 }

@@ -7,12 +7,14 @@ mod curve;
 mod decide;
 mod detectable;
 mod experiment;
+mod grid;
 mod group;
 mod left_over;
 mod lines;
 mod moments;
 mod portrait;
 mod probability;
+mod samples;
 mod shrink;
 mod strange;
 mod stretch;
@@ -24,7 +26,7 @@ pub use closed_loop::{Yardstick, free_running, one_step};
 pub use correlation::{Correlation, bounds_hit, correlations};
 pub use curve::{CurvePoint, curve};
 pub use decide::{Decision, Found, Verdict, decide};
-pub(crate) use decide::{Limits, UNEXPLAINED, UNSEEN, best, rivals, unknown};
+pub(crate) use decide::{Limits, UNEXPLAINED, UNSEEN, rivals, unknown};
 pub use detectable::{Detectable, Seen, detectable};
 pub use experiment::experiment;
 pub(crate) use left_over::left_over;
@@ -36,6 +38,6 @@ pub use strange::Stranger;
 pub(crate) use strange::strangers;
 pub(crate) use stretch::{carried_by_one_log, carried_by_one_stretch, pieces};
 pub(crate) use weigh::{
-    COST_OF_SHIFT, HELPS, LEAST_SHARE, NEVER, RARE_SHIFT, Weighed, at_a_bound, beyond, costs_of, is_part,
+    COST_OF_SHIFT, HELPS, LEAST_SHARE, NEVER, RARE_SHIFT, Weighed, at_a_bound, best, beyond, costs_of, is_part,
     worth_their_more,
 };

@@ -14,6 +14,8 @@ pub(crate) const COST_OF_SHIFT: f64 = 15.0;
 /// rate [nats].
 const OFFSETS: [&str; 3] = ["float_torque", "g_sensitive_float_torque", "direction_asymmetry"];
 const COST_SLOWLY: f64 = 22.0;
+/// What acts as one of them does, and is made of no noise.
+const PLAIN_OFFSETS: [&str; 2] = ["constant_torque", "torque_bias"];
 /// Share of it that such an effect must bring to be likelier than not.
 const RARE_SLOWLY: f64 = 0.85;
 /// How much more where the bearing turns around most of the time: its friction is as good as unknown there.
@@ -52,7 +54,7 @@ pub(crate) struct Weighed {
 /// Every set that was fitted, in their order, then every effect that was only glimpsed.
 pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Vec<Weighed> {
     let closest = search.closest();
-    let temper = problem.formulation(closest);
+    let temper = search.temper(problem);
     let mut all: Vec<Weighed> = search
         .fits
         .iter()
@@ -66,6 +68,7 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         .collect();
     let excess = (search.null.square - closest.square).max(1.0);
     worth_their_more(&mut all, LEAST_SHARE * excess, |index| search.fits[index].square);
+    as_plain_ones(&mut all);
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;
         if !all.iter().any(|set| set.effects == [effect]) {
@@ -74,6 +77,27 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         }
     }
     all
+}
+
+/// Where a plain offset would be named, there is one that noise did not make: what explains it better need bring no more.
+fn as_plain_ones(sets: &mut [Weighed]) {
+    let Some(plain) = best(sets, |set| set.nats - set.cost).cloned() else { return };
+    let stands_for = |set: &Weighed| {
+        let only = |of: &[&'static str], other: &[&str]| -> Vec<&'static str> {
+            of.iter().filter(|effect| !other.contains(effect)).copied().collect()
+        };
+        let [given, taken] = [only(&set.effects, &plain.effects), only(&plain.effects, &set.effects)];
+        matches!((&given[..], &taken[..]), ([given], [taken]) if OFFSETS.contains(given) && PLAIN_OFFSETS.contains(taken))
+    };
+    for set in sets.iter_mut().filter(|set| set.nats > plain.nats && stands_for(set)) {
+        (set.cost, set.rare) = (plain.cost, plain.rare);
+    }
+}
+
+/// The set that was fitted and has most of something, of those that have any.
+pub(crate) fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&Weighed> {
+    let fitted = sets.iter().filter(|set| set.fit.is_some() && of(set) > 0.0);
+    fitted.max_by(|a, b| of(a).total_cmp(&of(b)))
 }
 
 /// What a set has more than a smaller one must be worth it: one that takes less than so much more is less than that one is.

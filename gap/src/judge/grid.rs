@@ -1,0 +1,76 @@
+//! `pickoff_quantisation` as a converter makes it of an angle that has its noise already: every sample is a multiple of the
+//! step, however fine that is. What is on a grid by how many digits were written is not told.
+
+/// Of the gaps between neighbouring angles, the one that is taken for the step; how far from a whole number of steps a gap
+/// may be, and how many steps a gap may have to say so.
+const SMALL: f64 = 0.1;
+const OFF: f64 = 0.02;
+const FEW: f64 = 8.5;
+/// Share of the gaps that must be whole.
+const WHOLE: f64 = 0.95;
+/// What is less than this share of the noise is how numbers are written.
+const WRITTEN: f64 = 1e-4;
+/// Standard deviations of the noise's power that a step adds to it, to be told.
+const SHOWN: f64 = 6.0;
+/// Fewest gaps.
+const LEAST: usize = 20;
+
+/// The step on whose multiples all angles lie, where it adds to the noise [rad].
+#[must_use]
+pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<f64> {
+    let mut angles: Vec<f64> = theta.iter().zip(valid).filter(|(_, valid)| **valid).map(|(angle, _)| *angle).collect();
+    let rows = angles.len() as f64;
+    angles.sort_by(f64::total_cmp);
+    let gaps = angles.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > WRITTEN * noise_rad);
+    let mut gaps: Vec<f64> = gaps.collect();
+    gaps.sort_by(f64::total_cmp);
+    if gaps.len() < LEAST {
+        return None;
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the gaps")]
+    let first = gaps[(SMALL * gaps.len() as f64) as usize];
+    gaps.truncate(gaps.partition_point(|gap| *gap < FEW * first));
+    let whole = gaps.iter().filter(|gap| (**gap / first - (**gap / first).round()).abs() < OFF).count() as f64;
+    let steps: f64 = gaps.iter().map(|gap| (gap / first).round()).sum();
+    let step_rad = gaps.iter().sum::<f64>() / steps;
+    let shown = (rows / 2.0).sqrt() * (step_rad / noise_rad).powi(2) / 12.0 > SHOWN;
+    (whole > WHOLE * gaps.len() as f64 && shown && !is_written(step_rad)).then_some(step_rad)
+}
+
+/// Whether a step is a power of ten.
+fn is_written(step_rad: f64) -> bool {
+    let digits = step_rad.log10();
+    (digits - digits.round()).abs() < 1e-3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::step_rad;
+
+    /// Even numbers from -1 to 1, ever the same.
+    fn noise(count: usize) -> Vec<f64> {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        (0..count).map(|_| next() + next() + next()).collect()
+    }
+
+    fn angles(step_rad: f64) -> Vec<f64> {
+        let noise = noise(10_000);
+        let moves = |k: usize| 40e-6 * (k as f64 * 2e-3).sin();
+        (0..noise.len()).map(|k| ((moves(k) + 3e-7 * noise[k]) / step_rad).round() * step_rad).collect()
+    }
+
+    #[test]
+    fn a_step_below_the_noise_is_read_off_its_multiples() {
+        let valid = vec![true; 10_000];
+        let step = step_rad(&angles(4.321e-7), &valid, 3e-7).unwrap();
+        assert!((step / 4.321e-7 - 1.0).abs() < 1e-3, "{step}");
+        assert_eq!(step_rad(&angles(1e-13), &valid, 3e-7), None);
+        // far below the noise, and as many digits as were written
+        assert_eq!(step_rad(&angles(3e-8), &valid, 3e-7), None);
+        assert_eq!(step_rad(&angles(1e-6), &valid, 3e-7), None);
+    }
+}

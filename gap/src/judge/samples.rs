@@ -1,0 +1,27 @@
+//! What the samples show by themselves, whatever fits: a stop that is elsewhere, and the steps of a converter.
+
+use gimbal_model_file::Tolerance;
+
+use super::comb;
+use super::grid;
+use super::weigh::BEYOND;
+use crate::fit::{Fit, Problem};
+use crate::record::Signal;
+
+/// How far the stop is from where it should be, as a pick-off of this scale shows it, and the error of that.
+pub(super) fn stop_change(problem: &Problem, pickoff: f64, tolerance: &Tolerance) -> Option<(f64, f64)> {
+    let plateau = problem.record.plateau_rad?;
+    let change = plateau / (problem.stop_rad * pickoff) - 1.0;
+    // the pick-off that shows it has a scale of its own
+    let scale = problem.nuisance("pickoff_scale").map_or(0.0, |place| problem.nuisances[place].sigma);
+    let error = (1.0 + change) * scale.hypot(problem.noise[0] / plateau);
+    (change.abs() > BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale)).then_some((change, error))
+}
+
+/// The step of the pick-off, where its samples show one [rad].
+pub(super) fn pickoff_step(problem: &Problem, fit: &Fit) -> Option<f64> {
+    let theta = problem.record.channel(Signal::GyroAngle)?;
+    let (angles, noise_rad) = (&theta.values, problem.noise[0]);
+    comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad)
+        .or_else(|| grid::step_rad(angles, &theta.valid, noise_rad))
+}
