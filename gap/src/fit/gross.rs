@@ -27,8 +27,7 @@ pub(crate) fn gross(problem: &Problem, null: &Fit) -> Vec<Fit> {
     if null.square < GROSS * problem.whitener.count() as f64 {
         return Vec::new();
     }
-    let mut starts: Vec<Start> =
-        (0..problem.candidates.len()).into_par_iter().filter_map(|candidate| best(problem, candidate)).collect();
+    let mut starts = starts(problem);
     starts.sort_by(|a, b| a.square.total_cmp(&b.square));
     starts.truncate(FITTED);
     let fit = |start: &Start| {
@@ -41,16 +40,27 @@ pub(crate) fn gross(problem: &Problem, null: &Fit) -> Vec<Fit> {
     starts.par_iter().map(fit).filter(|fit| fit.square < null.square).collect()
 }
 
-/// The change of a candidate's parameter that leaves least, all else nominal.
-fn best(problem: &Problem, candidate: usize) -> Option<Start> {
-    let [release] = problem.candidates[candidate].releases else { return None };
-    let place = problem.nuisance(release).filter(|&place| !problem.nuisances[place].absolute)?;
-    let set = Set(vec![candidate]);
-    let start = |change: f64| {
-        let shift = change.ln_1p();
-        let mut point = Point::nominal(problem, vec![vec![0.0]]);
-        point.shifts[place] = shift;
-        Start { candidate, place, shift, square: left(problem, &set, &point) }
+/// Every parameter at the change that leaves least, all else nominal.
+fn starts(problem: &Problem) -> Vec<Start> {
+    let place = |candidate: usize| {
+        let [release] = problem.candidates[candidate].releases else { return None };
+        let place = problem.nuisance(release).filter(|&place| !problem.nuisances[place].absolute)?;
+        Some((candidate, place))
     };
-    CHANGES.map(start).into_iter().filter(|start| start.square.is_finite()).min_by(|a, b| a.square.total_cmp(&b.square))
+    let places: Vec<(usize, usize)> = (0..problem.candidates.len()).filter_map(place).collect();
+    let changed = |&(candidate, place): &(usize, usize)| {
+        CHANGES.map(|change| {
+            let mut point = Point::nominal(problem, vec![vec![0.0]]);
+            point.shifts[place] = change.ln_1p();
+            (Set(vec![candidate]), point)
+        })
+    };
+    let tries: Vec<(Set, Point)> = places.iter().flat_map(changed).collect();
+    let squares = left(problem, &tries);
+    let least = |(&(candidate, place), squares): (&(usize, usize), &[f64])| {
+        let start = |(change, &square): (&f64, &f64)| Start { candidate, place, shift: change.ln_1p(), square };
+        let finite = CHANGES.iter().zip(squares).map(start).filter(|start| start.square.is_finite());
+        finite.min_by(|a, b| a.square.total_cmp(&b.square))
+    };
+    places.iter().zip(squares.chunks(CHANGES.len())).filter_map(least).collect()
 }

@@ -1,8 +1,6 @@
 //! An appendage so heavy that the loop's own poles move: equations that are linear in its inertia do not lead there, so
 //! it is tried at a few values first.
 
-use rayon::prelude::*;
-
 use super::hypothesis::{Point, left};
 use super::refine::Effort;
 use super::{Fit, Problem, Set, refine};
@@ -24,11 +22,9 @@ pub(crate) fn heavy(problem: &Problem, null: &Fit) -> Option<Fit> {
     let candidate = problem.candidates.iter().position(|candidate| candidate.effect == "flexible_mode")?;
     let set = Set(vec![candidate]);
     let frequencies = std::iter::successors(Some(FROM_HZ), |hz| Some(hz * STEP)).take_while(|hz| *hz < TO_HZ);
-    let tries: Vec<Vec<Vec<f64>>> = frequencies.map(|hz| vec![vec![SHARE, hz, MODE_DAMPING]]).collect();
-    let tried = |values: Vec<Vec<f64>>| {
-        let point = Point { values, ..null.point(problem) };
-        (left(problem, &set, &point), point.values)
-    };
-    let (square, values) = tries.into_par_iter().map(tried).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (square < null.square).then(|| refine(problem, &set, &values, Some(null), Effort::Thorough))
+    let at = |hz: f64| Point { values: vec![vec![SHARE, hz, MODE_DAMPING]], ..null.point(problem) };
+    let tries: Vec<(Set, Point)> = frequencies.map(|hz| (set.clone(), at(hz))).collect();
+    let squares = left(problem, &tries);
+    let (square, (_, point)) = squares.iter().zip(&tries).min_by(|a, b| a.0.total_cmp(b.0))?;
+    (*square < null.square).then(|| refine(problem, &set, &point.values, Some(null), Effort::Thorough))
 }

@@ -31,9 +31,14 @@ impl Point {
     }
 }
 
-/// Square that a set of candidates leaves at a point, without a fit.
-pub(crate) fn left(problem: &Problem, set: &Set, point: &Point) -> f64 {
-    Hypothesis::new(problem, set, &point.values).evaluate(point).square
+/// Squares that sets of candidates leave at points, without a fit.
+pub(crate) fn left(problem: &Problem, tries: &[(Set, Point)]) -> Vec<f64> {
+    let variant = |(set, point): &(Set, Point)| Hypothesis::new(problem, set, &point.values).variant(point, usize::MAX);
+    let variants: Vec<Variant> = tries.iter().map(variant).collect();
+    predict_each(&variants, &problem.record.inputs, |_, prediction| {
+        let residual = problem.whiten(residual(problem.record, &prediction));
+        residual.iter().map(|value| value * value).sum()
+    })
 }
 
 /// What a try predicts.

@@ -11,7 +11,7 @@ use super::refine::Effort;
 use super::refit::rebase;
 use super::signals::peak;
 use super::{Fit, Problem, refine};
-use crate::library::{Candidate, PROMISE};
+use crate::library::PROMISE;
 
 /// A set of candidates, by index.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -321,14 +321,15 @@ fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
 
 /// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does.
 fn settings(problem: &Problem, from: &Fit, effect: &str) -> Vec<(usize, Vec<f64>)> {
-    let tried = |(index, candidate): (usize, &Candidate)| {
-        let own = candidate.probes[0].0.clone();
-        let (set, values) = extended(from, index, own.clone());
-        let point = Point { values, ..from.point(problem) };
-        (left(problem, &set, &point), (index, own))
+    let of_effect = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
+    let places: Vec<(usize, Vec<f64>)> =
+        of_effect.map(|(index, candidate)| (index, candidate.probes[0].0.clone())).collect();
+    let tried = |(index, own): &(usize, Vec<f64>)| {
+        let (set, values) = extended(from, *index, own.clone());
+        (set, Point { values, ..from.point(problem) })
     };
-    let all = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
-    let mut all: Vec<(f64, (usize, Vec<f64>))> = all.map(tried).collect();
+    let tries: Vec<(Set, Point)> = places.iter().map(tried).collect();
+    let mut all: Vec<(f64, (usize, Vec<f64>))> = left(problem, &tries).into_iter().zip(places).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut seen: Vec<Option<u64>> = Vec::new();
     all.retain(|(_, (_, own))| {

@@ -12,8 +12,6 @@ use super::{Inputs, Physics};
 
 /// Predictions that go side by side.
 const SIDE_BY_SIDE: usize = 4;
-/// Fewer are as quick one after the other.
-const WORTH_WHILE: usize = 3;
 
 /// Where a prediction begins.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,10 +123,10 @@ pub fn predict_each<T: Send>(
     let run = |group: &&[usize]| -> Vec<(usize, T)> {
         // the last again where some are missing
         let of = |lane: usize| &variants[group[lane.min(group.len() - 1)]];
-        let predictions: Vec<Prediction> = if group.len() < WORTH_WHILE {
-            group.iter().flat_map(|&index| together([&variants[index]], inputs)).collect()
-        } else {
-            together::<SIDE_BY_SIDE>(std::array::from_fn(of), inputs).into()
+        let predictions: Vec<Prediction> = match group.len() {
+            1 => together([of(0)], inputs).into(),
+            2 => together([of(0), of(1)], inputs).into(),
+            _ => together::<SIDE_BY_SIDE>(std::array::from_fn(of), inputs).into(),
         };
         group.iter().zip(predictions).map(|(&index, prediction)| (index, make(index, prediction))).collect()
     };
