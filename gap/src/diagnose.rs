@@ -5,8 +5,8 @@ use gimbal_model_file::ModelFile;
 
 use crate::fit::{Fit, Ground, Known, Problem, Search, Tried, null, raw_residual, search, without};
 use crate::judge::{
-    Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Verdict, Yardstick, bounds_hit, correlations,
-    curve, decide, detectable, free_running, one_step, portrait, shrink,
+    Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Spread, Verdict, Yardstick, bounds_hit,
+    correlations, curve, decide, detectable, free_running, one_step, portrait, shrink,
 };
 use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
@@ -181,6 +181,10 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     };
+    let spread = Spread::new(&problem, &fit);
+    if let Some(spread) = &spread {
+        spread.widen(&problem, &fit, &mut decision.found);
+    }
     let gap = decision.verdict != Verdict::NoGap;
     let left = matches!(decision.verdict, Verdict::PartlyExplained | Verdict::Unexplained);
     let (free_running, (portrait, detectable, correlations, curve)) = rayon::join(
@@ -188,7 +192,12 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         || {
             let portrait = left.then(|| portrait(&problem, &fit));
             let detectable = detectable(&problem, &fit, &decision, &model.tolerance);
-            (portrait, detectable, correlations(&problem, &fit), curve(&problem, &fit, &shrink.nominal))
+            (
+                portrait,
+                detectable,
+                spread.as_ref().map_or_else(Vec::new, correlations),
+                curve(&problem, &fit, &shrink.nominal),
+            )
         },
     );
     let bounds_hit = bounds_hit(&problem, &fit);

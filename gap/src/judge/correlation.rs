@@ -2,7 +2,8 @@
 
 use gimbal_plant::{Bound, Effect};
 
-use crate::fit::{Fit, Linear, Problem, solve};
+use super::spread::Spread;
+use crate::fit::{Fit, Problem};
 
 /// Correlations are told from this size on.
 const TOLD: f64 = 0.3;
@@ -22,43 +23,13 @@ pub struct Correlation {
 
 /// Correlations of the values of a fit, the strongest three of each.
 #[must_use]
-pub fn correlations(problem: &Problem, fit: &Fit) -> Vec<Correlation> {
-    let begin = problem.columns.begin;
-    let fixed = begin + problem.columns.nuisances;
-    let mut names: Vec<String> = (0..begin).map(|_| "the beginning".to_owned()).collect();
-    names.extend(problem.nuisances.iter().map(|own| own.name.to_owned()));
-    let (_, precision) = problem.chosen(&fit.set.0);
-    let mut weights = precision[..fixed].to_vec();
-    let mut own: Vec<usize> = Vec::new();
-    for (place, &index) in fit.set.0.iter().enumerate() {
-        let candidate = &problem.candidates[index];
-        for release in candidate.releases {
-            own.extend(problem.nuisance(release).map(|at| begin + at));
-        }
-        let Some(entry) = Effect::from_name(candidate.effect).filter(|_| candidate.releases.is_empty()) else {
-            continue;
-        };
-        for (value, parameter) in entry.parameters().iter().enumerate() {
-            own.push(names.len());
-            names.push(format!("{} {}", candidate.effect, parameter.name));
-            let spread = 0.5 * parameter.low.abs().max(parameter.high.abs());
-            let logarithm = parameter.bound != Bound::Any && fit.values[place][value] > 0.0;
-            weights.push(if logarithm { 1.0 } else { spread.powi(-2) });
-        }
-    }
-    if names.len() != fixed + fit.sensitivities.len() {
-        return Vec::new();
-    }
-    let (gram, drive) = Linear::of(problem).joined(&fit.sensitivities, &fit.residual);
-    let chosen: Vec<usize> = (0..drive.len()).collect();
-    let Some(solution) = solve(&gram, &drive, &chosen, &weights) else { return Vec::new() };
-    let of = |a: usize, b: usize| {
-        let covariance = &solution.covariance;
-        covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).max(1e-300).sqrt()
-    };
+pub fn correlations(spread: &Spread) -> Vec<Correlation> {
+    let Spread { names, begin, own, covariance } = spread;
+    let of = |a: usize, b: usize| covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).max(1e-300).sqrt();
     own.iter()
+        .flatten()
         .flat_map(|&value| {
-            let mut all: Vec<(usize, f64)> = (begin..drive.len())
+            let mut all: Vec<(usize, f64)> = (*begin..names.len())
                 .filter(|other| *other != value)
                 .map(|other| (other, of(value, other)))
                 .filter(|(_, correlation)| correlation.abs() > TOLD)

@@ -10,8 +10,10 @@ const SCALE_SHARE: f64 = 1e-5;
 /// The same where evidence is as small as chance makes it, and how far below that reaches [nats].
 const SCALE_OF_CHANCE: f64 = 1.3;
 const CHANCE: f64 = 1.0;
-/// Probability from which on a fuller set is named in the place of the one that is part of it.
+/// Probability from which on fuller sets are named in the place of the one that is part of them.
 const LIKELIER: f64 = 0.5;
+/// How much likelier than that one the likeliest of them must be.
+const THAN_ONE: f64 = 1.5;
 
 /// A set of effects and its probability.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,13 +55,21 @@ impl Probabilities {
         Self { sets: weights.iter().map(|weight| weight / sum).collect(), nothing: nothing / sum }
     }
 
-    /// The set that holds one and more, where that is likelier than everything else together: once there is a gap, a
-    /// further effect need not bring what the first one has to.
+    /// The likeliest set that holds one and one more, where such sets together are likelier than everything else, and it alone
+    /// is likelier than the one: once there is a gap, a further effect need not bring what the first one has to.
     pub(crate) fn fuller<'a>(&self, sets: &'a [Weighed], best: &'a Weighed) -> &'a Weighed {
-        let fuller = sets.iter().zip(&self.sets).filter(|(set, probability)| {
-            set.fit.is_some() && **probability > LIKELIER && is_part(&best.effects, &set.effects)
-        });
-        fuller.map(|(set, _)| set).next().unwrap_or(best)
+        let fuller = || {
+            let fitted = |(set, probability): &(&'a Weighed, &f64)| {
+                let one_more = set.effects.len() == best.effects.len() + 1 || **probability > LIKELIER;
+                set.fit.is_some() && one_more && is_part(&best.effects, &set.effects)
+            };
+            sets.iter().zip(&self.sets).filter(fitted)
+        };
+        let together: f64 = fuller().map(|(_, probability)| probability).sum();
+        let own = sets.iter().zip(&self.sets).find(|(set, _)| set.effects == best.effects).map_or(0.0, |own| *own.1);
+        let likeliest = fuller().max_by(|a, b| a.1.total_cmp(b.1));
+        let likelier = |(_, probability): &(&Weighed, &f64)| together > LIKELIER && **probability > THAN_ONE * own;
+        likeliest.filter(likelier).map_or(best, |(set, _)| set)
     }
 
     /// The most probable first.
