@@ -233,6 +233,12 @@ proptest! {
     }
 }
 
+/// A carry near the largest number that there is.
+#[test]
+fn regress_a_carry_that_overflows() -> Result<(), TestCaseError> {
+    absurd::<Fixed>(1_415_099_632_336_493_640, 19)
+}
+
 fn absurd<N: Number>(seed: u64, words: usize) -> Result<(), TestCaseError> {
     let bytes = spoilt(image(&Config::consistent().build::<N>().unwrap()), HEADER_LEN, seed, words);
     match Law::<N>::from_image(&bytes) {

@@ -188,7 +188,8 @@ impl Number for Fixed {
 
     #[inline(always)]
     fn count_coarse(left: Self, scaled: Self, scale: u32, carry: &mut i64) -> i32 {
-        let exact = product(left.0, scaled.0) + *carry;
+        // a proper carry never overflows it, one of an absurd image may
+        let exact = product(left.0, scaled.0).wrapping_add(*carry);
         let high = (exact >> 32) as i32;
         let whole = high.wrapping_shr(scale);
         *carry = exact - (i64::from(whole.wrapping_shl(scale)) << 32);
