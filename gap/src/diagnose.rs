@@ -181,25 +181,20 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     };
-    let spread = Spread::new(&problem, &fit);
-    if let Some(spread) = &spread {
-        spread.widen(&problem, &fit, &mut decision.found);
-    }
     let gap = decision.verdict != Verdict::NoGap;
     let left = matches!(decision.verdict, Verdict::PartlyExplained | Verdict::Unexplained);
-    let (free_running, (portrait, detectable, correlations, curve)) = rayon::join(
+    let (free_running, (portrait, detectable, spread, curve)) = rayon::join(
         || if gap { free_running(record, model, &decision, &fit) } else { Vec::new() },
         || {
             let portrait = left.then(|| portrait(&problem, &fit));
             let detectable = detectable(&problem, &fit, &decision, &model.tolerance);
-            (
-                portrait,
-                detectable,
-                spread.as_ref().map_or_else(Vec::new, correlations),
-                curve(&problem, &fit, &shrink.nominal),
-            )
+            (portrait, detectable, Spread::new(&problem, &fit), curve(&problem, &fit, &shrink.nominal))
         },
     );
+    if let Some(spread) = &spread {
+        spread.widen(&mut decision.found);
+    }
+    let correlations = spread.as_ref().map_or_else(Vec::new, correlations);
     let bounds_hit = bounds_hit(&problem, &fit);
     let one_step = if gap { one_step(record, &before, &after) } else { Vec::new() };
     let found_regimes = if gap { regimes(record, &fit.prediction, &total, channels) } else { Vec::new() };

@@ -14,7 +14,7 @@ use super::ripple;
 use super::shapes::{Impulse, Shapes};
 use super::signals::{Kept, Signals, peak, residual, scaled, valid};
 use super::slip::{Slips, Turned, Turning};
-use super::turning::{at_once, impulse, remembered, turning_noise, turns};
+use super::turning::{at_once, impulse, mostly, remembered, turning_noise, turns};
 use super::whiten::Loop;
 use super::{Columns, Problem, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, narrow, not_looked_for, nuisances, platform};
@@ -152,6 +152,7 @@ impl<'a> Ground<'a> {
             whitener,
             path,
             turns_at_once,
+            turns_mostly: mostly(&self.turns),
             turns: self.turns.clone(),
             noise: self.noise.clone(),
             ceiling_nm: self.offer.sees_torque.then_some(self.offer.peak_torque_nm),

@@ -35,10 +35,7 @@ impl Point {
 pub(crate) fn left(problem: &Problem, tries: &[(Set, Point)]) -> Vec<f64> {
     let variant = |(set, point): &(Set, Point)| Hypothesis::new(problem, set, &point.values).variant(point, usize::MAX);
     let variants: Vec<Variant> = tries.iter().map(variant).collect();
-    predict_each(&variants, &problem.record.inputs, |_, prediction| {
-        let residual = problem.whiten(residual(problem.record, &prediction));
-        residual.iter().map(|value| value * value).sum()
-    })
+    predict_each(&variants, &problem.record.inputs, |_, prediction| Outcome::of(problem, prediction).square)
 }
 
 /// What a try predicts.
@@ -49,6 +46,14 @@ pub(crate) struct Outcome {
     pub(crate) residual: Vec<f64>,
     /// Its square.
     pub(crate) square: f64,
+}
+
+impl Outcome {
+    fn of(problem: &Problem, prediction: Prediction) -> Self {
+        let residual = problem.whiten(residual(problem.record, &prediction));
+        let square = residual.iter().map(|value| value * value).sum();
+        Self { prediction, residual, square }
+    }
 }
 
 /// One value that is fitted beside the nominal parameters.
@@ -138,10 +143,7 @@ impl<'a> Hypothesis<'a> {
 
     /// Prediction and whitened residual at a point.
     pub(crate) fn evaluate(&self, point: &Point) -> Outcome {
-        let prediction = self.predict(point);
-        let residual = self.problem.whiten(residual(self.problem.record, &prediction));
-        let square = residual.iter().map(|value| value * value).sum();
-        Outcome { prediction, residual, square }
+        Outcome::of(self.problem, self.predict(point))
     }
 
     /// What the prediction changes by from a point to moved ones, whitened, over the steps.

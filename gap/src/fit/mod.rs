@@ -33,7 +33,7 @@ pub use normal::Solution;
 pub(crate) use normal::{drive, of_any_scale, slices, solve};
 pub use problem::{BLOCKS, Columns, Problem};
 pub use refine::{Effort, Fit, refine};
-pub(crate) use refine::{is_idle, linearised, stand};
+pub(crate) use refine::{is_idle, linearised, stand, standard_errors};
 pub(crate) use refit::rebase;
 pub use refit::{refit, without};
 pub use search::{Glimpse, Search, Set, null, search};

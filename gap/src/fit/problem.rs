@@ -23,8 +23,6 @@ const NOISE_KNOWN: f64 = 1.005;
 const BY_CHANCE: f64 = 3.0;
 /// Share of the gap that a formulation may leave.
 const MAY_LEAVE: f64 = 0.02;
-/// Share of the rows from which on the bearing turns around most of the time.
-const MOSTLY: f64 = 0.25;
 
 /// Which column is what.
 #[derive(Debug, Clone)]
@@ -73,6 +71,8 @@ pub struct Problem<'a> {
     pub path: Path,
     /// Whether it does.
     pub turns_at_once: bool,
+    /// Whether it hardly ever moves one way for long.
+    pub turns_mostly: bool,
     /// Rows at which it does.
     pub turns: Vec<bool>,
     /// Rms of the noise of each channel.
@@ -96,11 +96,6 @@ impl<'a> Problem<'a> {
             raw.par_iter().chain(more).map(|column| narrow(&self.whitener.apply(&column.signals()))).collect();
         self.gram = gram(&slices(&self.whitened), 0..self.whitener.rows());
         self
-    }
-
-    /// Whether the bearing hardly ever moves one way for long: a platform at rest.
-    pub(crate) fn mostly_turns(&self) -> bool {
-        self.turns.iter().filter(|turns| **turns).count() as f64 > MOSTLY * self.turns.len() as f64
     }
 
     /// The noise that the best fit leaves, over that of the sensors: what is more than the noise is known to is put

@@ -2,6 +2,7 @@
 //! parameters and beginning along with it.
 
 use gimbal_plant::Effect;
+use nalgebra::DMatrix;
 
 use super::hypothesis::{Hypothesis, Outcome, Point};
 use super::linear::{Equations, Linear};
@@ -229,6 +230,35 @@ impl Walk<'_> {
     }
 }
 
+fn sigma(covariance: &DMatrix<f64>, column: usize) -> f64 {
+    covariance[(column, column)].max(0.0).sqrt()
+}
+
+/// Standard errors of a set's values: of those that are fitted on their own, and of the changes of what it releases.
+pub(crate) fn standard_errors(
+    hypothesis: &Hypothesis,
+    values: &[Vec<f64>],
+    shifts: &[f64],
+    covariance: &DMatrix<f64>,
+) -> Vec<Vec<f64>> {
+    let problem = hypothesis.problem;
+    let mut errors: Vec<Vec<f64>> = values.iter().map(|values| vec![0.0; values.len()]).collect();
+    for (index, free) in hypothesis.free.iter().enumerate() {
+        let sigma = sigma(covariance, hypothesis.fixed() + index);
+        let value = values[free.effect][free.value];
+        errors[free.effect][free.value] = if free.log { sigma * value.abs() } else { sigma };
+    }
+    for (effect, &index) in hypothesis.set.0.iter().enumerate() {
+        for (place, release) in problem.candidates[index].releases.iter().enumerate() {
+            if let Some(nuisance) = problem.nuisance(release) {
+                let change = |by: f64| problem.nuisances[nuisance].change(&problem.base, shifts[nuisance] + by);
+                errors[effect][place] = change(sigma(covariance, problem.columns.begin + nuisance)) - change(0.0);
+            }
+        }
+    }
+    errors
+}
+
 fn finish(hypothesis: &Hypothesis, point: Point, outcome: Outcome, last: Option<Made>) -> Fit {
     let (problem, set) = (hypothesis.problem, hypothesis.set);
     let prior = hypothesis.cost(&point);
@@ -240,25 +270,17 @@ fn finish(hypothesis: &Hypothesis, point: Point, outcome: Outcome, last: Option<
     let mut scale_free = 0.0;
     let mut sensitivities = Vec::new();
     if let Some((solution, columns)) = last {
-        let sigma = |column: usize| solution.covariance[(column, column)].max(0.0).sqrt();
-        for (index, free) in hypothesis.free.iter().enumerate() {
-            let sigma = sigma(hypothesis.fixed() + index);
-            errors[free.effect][free.value] =
-                if free.log { sigma * values[free.effect][free.value].abs() } else { sigma };
-            if free.any_scale {
-                scale_free += of_any_scale(free.sigma, sigma);
-            }
+        for (index, free) in hypothesis.free.iter().enumerate().filter(|(_, free)| free.any_scale) {
+            scale_free += of_any_scale(free.sigma, sigma(&solution.covariance, hypothesis.fixed() + index));
         }
         for (effect, &index) in set.0.iter().enumerate() {
             for (place, release) in problem.candidates[index].releases.iter().enumerate() {
                 if let Some(nuisance) = problem.nuisance(release) {
-                    let own = &problem.nuisances[nuisance];
-                    let sigma = sigma(problem.columns.begin + nuisance);
-                    values[effect][place] = own.change(&problem.base, shifts[nuisance]);
-                    errors[effect][place] = own.change(&problem.base, shifts[nuisance] + sigma) - values[effect][place];
+                    values[effect][place] = problem.nuisances[nuisance].change(&problem.base, shifts[nuisance]);
                 }
             }
         }
+        errors = standard_errors(hypothesis, &values, &shifts, &solution.covariance);
         let walls = Pull::new(problem, &hypothesis.precision, &shifts).walls;
         volume = solution.evidence - 0.5 * solution.gain - walls + scale_free;
         sensitivities = columns;

@@ -102,7 +102,7 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
             .par_iter()
             .take(SINGLES)
             .filter(|extension| promising(problem, extension))
-            .map(|extension| extend(problem, null, extension)),
+            .filter_map(|extension| extend(problem, null, extension)),
     );
     sort(problem, null, &mut fits);
     for size in 1..3 {
@@ -114,7 +114,7 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
                 let next = best_by_effect(problem, extensions(problem, seed), EXTENSIONS);
                 next.into_par_iter()
                     .filter(|extension| promising(problem, extension))
-                    .map(|extension| extend(problem, seed, &extension))
+                    .filter_map(|extension| extend(problem, seed, &extension))
             })
             .collect();
         for fit in wider {
@@ -291,32 +291,40 @@ fn hopeless(index: usize) -> Extension {
 /// The best candidate of each effect, the best effects first.
 fn best_by_effect(problem: &Problem, mut order: Vec<Extension>, count: usize) -> Vec<Extension> {
     order.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut seen: Vec<&str> = Vec::new();
-    order.retain(|extension| {
-        let name = problem.candidates[extension.index].effect;
-        let new = !seen.contains(&name) && extension.gain.is_finite();
-        seen.push(name);
-        new
-    });
+    first_of_each(&mut order, |extension| problem.candidates[extension.index].effect);
+    order.retain(|extension| extension.gain.is_finite());
     order.truncate(count);
     order
 }
 
-fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Fit {
+/// Keeps the first of each kind.
+fn first_of_each<T, K: PartialEq>(all: &mut Vec<T>, kind: impl Fn(&T) -> K) {
+    let mut seen: Vec<K> = Vec::new();
+    all.retain(|one| {
+        let own = kind(one);
+        let new = !seen.contains(&own);
+        if new {
+            seen.push(own);
+        }
+        new
+    });
+}
+
+fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {
     let candidate = &problem.candidates[extension.index];
-    let fitted = |index: usize, own: Vec<f64>| {
+    // a chord of pre-sliding misleads: its settings are tried as they are, and before a fit its formulations are hardly
+    // told apart
+    let starts = if candidate.effect == "presliding" {
+        settings(problem, from, candidate.effect)
+    } else {
+        vec![(extension.index, candidate.values(&extension.amplitudes))]
+    };
+    let fitted = |(index, own): (usize, Vec<f64>)| {
         let (set, values) = extended(from, index, own);
         refine(problem, &set, &values, Some(from), Effort::Quick)
     };
-    if candidate.effect != "presliding" {
-        return fitted(extension.index, candidate.values(&extension.amplitudes));
-    }
-    // a chord of pre-sliding misleads: its settings are tried as they are, and before a fit its formulations are hardly
-    // told apart
-    let formulations = settings(problem, from, candidate.effect);
-    let fits = formulations.into_par_iter().map(|(index, own)| fitted(index, own));
-    let closest = fits.min_by(|a, b| (a.square + a.prior).total_cmp(&(b.square + b.prior)));
-    closest.unwrap_or_else(|| fitted(extension.index, candidate.values(&extension.amplitudes)))
+    let fits = starts.into_par_iter().map(fitted);
+    fits.min_by(|a, b| (a.square + a.prior).total_cmp(&(b.square + b.prior)))
 }
 
 /// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does.
@@ -331,13 +339,7 @@ fn settings(problem: &Problem, from: &Fit, effect: &str) -> Vec<(usize, Vec<f64>
     let tries: Vec<(Set, Point)> = places.iter().map(tried).collect();
     let mut all: Vec<(f64, (usize, Vec<f64>))> = left(problem, &tries).into_iter().zip(places).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut seen: Vec<Option<u64>> = Vec::new();
-    all.retain(|(_, (_, own))| {
-        let formulation = own.get(1).map(|way| way.to_bits());
-        let new = !seen.contains(&formulation);
-        seen.push(formulation);
-        new
-    });
+    first_of_each(&mut all, |(_, (_, own))| own.get(1).copied());
     all.into_iter().take(FORMULATIONS).map(|(_, setting)| setting).collect()
 }
 

@@ -64,7 +64,12 @@ pub(crate) fn turns(base: &Physics, record: &Record, nominal: &Prediction) -> Ve
 pub(crate) fn at_once(turns: &[bool]) -> bool {
     let rows = turns.iter().filter(|turns| **turns).count();
     let runs = turns.windows(2).filter(|pair| pair[1] && !pair[0]).count();
-    rows as f64 <= SELDOM * turns.len() as f64 && rows <= SLOWLY * runs.max(1)
+    !mostly(turns) && rows <= SLOWLY * runs.max(1)
+}
+
+/// Whether the bearing hardly ever moves one way for long: a platform at rest.
+pub(crate) fn mostly(turns: &[bool]) -> bool {
+    turns.iter().filter(|turns| **turns).count() as f64 > SELDOM * turns.len() as f64
 }
 
 /// The same with the rows for which the loop remembers.

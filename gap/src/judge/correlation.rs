@@ -24,10 +24,9 @@ pub struct Correlation {
 /// Correlations of the values of a fit, the strongest three of each.
 #[must_use]
 pub fn correlations(spread: &Spread) -> Vec<Correlation> {
-    let Spread { names, begin, own, covariance } = spread;
+    let Spread { names, begin, own, covariance, .. } = spread;
     let of = |a: usize, b: usize| covariance[(a, b)] / (covariance[(a, a)] * covariance[(b, b)]).max(1e-300).sqrt();
     own.iter()
-        .flatten()
         .flat_map(|&value| {
             let mut all: Vec<(usize, f64)> = (*begin..names.len())
                 .filter(|other| *other != value)

@@ -43,7 +43,7 @@ pub(crate) struct Limits {
 impl Limits {
     pub(crate) fn of(problem: &Problem) -> Self {
         let limits = if problem.turns_at_once { AT_ONCE } else { SLOWLY };
-        let wary = if problem.record.comes_near_a_stop() || problem.mostly_turns() { WARY } else { 1.0 };
+        let wary = if problem.record.comes_near_a_stop() || problem.turns_mostly { WARY } else { 1.0 };
         Self { strange: wary * limits.strange, ..limits }
     }
 }
@@ -156,11 +156,13 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let limits = Limits::of(problem);
     let worthy = best(&sets, |set| set.nats - set.cost).map(|best| probabilities.fuller(&sets, best));
     let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
-    let shown = nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange)
-        || stop_change(problem, 1.0, tolerance).is_some()
-        || pickoff_step(problem, &search.null).is_some();
+    let shown = || {
+        nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange)
+            || stop_change(problem, 1.0, tolerance).is_some()
+            || pickoff_step(problem, &search.null).is_some()
+    };
     // a gap that torques of no effect show, or the samples, is none that the effect has to show
-    let best = worthy.or_else(|| if shown { best(&sets, |set| set.nats - set.rare) } else { None });
+    let best = worthy.or_else(|| best(&sets, |set| set.nats - set.rare).filter(|_| shown()));
     let chosen = best.and_then(|set| set.fit);
     let before = left_over(problem, &search.null.residual);
     let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index].residual));

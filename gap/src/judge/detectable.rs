@@ -6,6 +6,7 @@ use nalgebra::DVector;
 
 use super::comb;
 use super::decide::Decision;
+use super::samples::least_stop_change;
 use super::weigh::BEYOND;
 use crate::fit::{Fit, Problem, solve};
 use crate::record::{Signal, peak_rad, plateau};
@@ -130,7 +131,7 @@ fn ceiling_nm(problem: &Problem, fit: &Fit) -> Option<f64> {
 
 /// Relative change of the stop from which on the pick-off would have stood still on it.
 fn nearer_stop(problem: &Problem, tolerance: &Tolerance, farthest: f64) -> Option<f64> {
-    let least = BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale);
+    let least = least_stop_change(tolerance);
     let reached_rad = problem.record.plateau_rad.or_else(|| held_rad(problem, least, farthest))?;
     Some((reached_rad / problem.stop_rad - 1.0).min(-least))
 }

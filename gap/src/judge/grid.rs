@@ -45,22 +45,17 @@ fn is_written(step_rad: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
     use super::step_rad;
 
-    /// Even numbers from -1 to 1, ever the same.
-    fn noise(count: usize) -> Vec<f64> {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
-        (0..count).map(|_| next() + next() + next()).collect()
-    }
-
     fn angles(step_rad: f64) -> Vec<f64> {
-        let noise = noise(10_000);
-        let moves = |k: usize| 40e-6 * (k as f64 * 2e-3).sin();
-        (0..noise.len()).map(|k| ((moves(k) + 3e-7 * noise[k]) / step_rad).round() * step_rad).collect()
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let moves = |k: i32| 40e-6 * (f64::from(k) * 2e-3).sin();
+        let mut noisy = |k: i32| moves(k) + 3e-7 * rng.sample::<f64, _>(StandardNormal);
+        (0..10_000).map(|k| (noisy(k) / step_rad).round() * step_rad).collect()
     }
 
     #[test]

@@ -55,8 +55,9 @@ impl Probabilities {
         Self { sets: weights.iter().map(|weight| weight / sum).collect(), nothing: nothing / sum }
     }
 
-    /// The likeliest set that holds one and one more, where such sets together are likelier than everything else, and it alone
-    /// is likelier than the one: once there is a gap, a further effect need not bring what the first one has to.
+    /// The likeliest set that holds one and another effect, or more of them where it outweighs everything else by itself, if
+    /// such sets together are likelier than everything else, and it alone is likelier than the one: once there is a gap, a
+    /// further effect need not bring what the first one has to.
     pub(crate) fn fuller<'a>(&self, sets: &'a [Weighed], best: &'a Weighed) -> &'a Weighed {
         let fuller = || {
             let fitted = |(set, probability): &(&'a Weighed, &f64)| {

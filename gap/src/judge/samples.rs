@@ -15,7 +15,12 @@ pub(super) fn stop_change(problem: &Problem, pickoff: f64, tolerance: &Tolerance
     // the pick-off that shows it has a scale of its own
     let scale = problem.nuisance("pickoff_scale").map_or(0.0, |place| problem.nuisances[place].sigma);
     let error = (1.0 + change) * scale.hypot(problem.noise[0] / plateau);
-    (change.abs() > BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale)).then_some((change, error))
+    (change.abs() > least_stop_change(tolerance)).then_some((change, error))
+}
+
+/// Relative change of the stop, as the pick-off reads it, that no tolerance accounts for.
+pub(super) fn least_stop_change(tolerance: &Tolerance) -> f64 {
+    BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale)
 }
 
 /// The step of the pick-off, where its samples show one [rad].

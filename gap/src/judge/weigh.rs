@@ -124,7 +124,7 @@ pub(crate) fn names(fit: &Fit) -> Vec<&'static str> {
 fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
     let effects: Vec<&str> = set.iter().map(|&index| problem.candidates[index].effect).collect();
     let (cost, rare) = costs_of(&effects, problem.turns_at_once);
-    if problem.mostly_turns() { (TURNING * cost, TURNING * rare) } else { (cost, rare) }
+    if problem.turns_mostly { (TURNING * cost, TURNING * rare) } else { (cost, rare) }
 }
 
 /// What effects must bring to be named, and from where on they are likelier than not; whether bearings turn around at

@@ -18,6 +18,7 @@ const SINGLES: usize = 4;
 const EXTENSIONS: usize = 3;
 /// Least probability that a log gives a set that it asks the others about.
 const PROBABLE: f64 = 0.05;
+
 /// All that was fitted.
 pub(super) struct Found {
     pub(super) null: Fitted,
