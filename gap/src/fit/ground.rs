@@ -124,8 +124,7 @@ impl<'a> Ground<'a> {
                 Known { noise: scaled(noise, &self.over_noise), gap: scaled(gap, &self.over_noise) }
             }
         };
-        let turns_at_once = at_once(&self.turns);
-        let whitener = self.whitener(&known.noise, turns_at_once);
+        let whitener = self.whitener(&known.noise);
         let period_s = self.record.inputs.period_s;
         let path = Path::new(&whitener, &self.impulse.channels, self.impulse.torque_nm, period_s);
         let (mut candidates, mut columns, mut sigma) =
@@ -151,7 +150,6 @@ impl<'a> Ground<'a> {
             gram: nalgebra::DMatrix::zeros(0, 0),
             whitener,
             path,
-            turns_at_once,
             turns_mostly: mostly(&self.turns),
             turns: self.turns.clone(),
             noise: self.noise.clone(),
@@ -172,15 +170,15 @@ impl<'a> Ground<'a> {
         Draft { record: self.record, base, begin, nominal, over_noise: &self.over_noise }
     }
 
-    fn whitener(&self, rest: &Signals, turns_at_once: bool) -> Whitener {
+    fn whitener(&self, rest: &Signals) -> Whitener {
         let (base, record, nominal, turns) = (&self.base, self.record, &self.nominal, &self.turns);
-        let turning_noise = if turns_at_once { 0.0 } else { turning_noise(base, record, nominal, turns) };
+        let turning_noise = if at_once(turns) { 0.0 } else { turning_noise(base, record, nominal, turns) };
         let (period_s, rate_noise) = (record.inputs.period_s, &record.rate_noise);
         let turning = &remembered(turns);
         let (plans, shapes) = (&self.plans, &self.shapes);
         let behind = Loop { plans, shapes, turning, turning_noise, rate_noise, period_s };
         let whitener = Whitener::new(rest, &self.valid, behind);
-        if !turns_at_once {
+        if mostly(turns) {
             return whitener;
         }
         let turned = self.turned.get_or_init(|| {

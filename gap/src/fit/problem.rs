@@ -67,10 +67,8 @@ pub struct Problem<'a> {
     pub gram: DMatrix<f64>,
     /// Noise.
     pub whitener: Whitener,
-    /// What a torque on the gimbal does, as long as the bearing turns around at once.
+    /// What a torque on the gimbal does, as long as the bearing does not turn around.
     pub path: Path,
-    /// Whether it does.
-    pub turns_at_once: bool,
     /// Whether it hardly ever moves one way for long.
     pub turns_mostly: bool,
     /// Rows at which it does.

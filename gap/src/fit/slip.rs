@@ -8,7 +8,9 @@
 //! ```
 //!
 //! one block after the other, a' = a after the blocks before it: what comes out is white (Potter's square root).
-//! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant.
+//! Blocks are short against the loop and long against the filter of the rate, whose error they take for constant. Where
+//! the bearing turns around slowly they are of 16 rows, and their mean alone is whitened here: it is what many rows
+//! together, a float's torque, would be taken for. What the error does inside of them is left to the filter.
 //!
 //! What the logged rate does from row to row says how large s may be: some of that is motion. A residual r says how
 //! large it is: `-2 ln L = |x|^2 + sum ln(1 + |a'|^2)`, x what comes out of r. Of the sizes that are as likely as the
@@ -18,6 +20,7 @@ use rayon::prelude::*;
 
 use super::normal::narrow;
 use super::signals::{Kept, Signals, difference, scaled};
+use super::turning::{SLOWLY, at_once};
 use super::vectors::take_along;
 use crate::record::{RateNoise, Record};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
@@ -176,7 +179,8 @@ impl Turning<'_> {
         if self.record.rate_noise.rms_radps < 1e-9 {
             return Vec::new();
         }
-        let mut longest = self.record.rate_noise.rows_alike();
+        let least = if at_once(self.turns) { 1 } else { SLOWLY };
+        let mut longest = self.record.rate_noise.rows_alike().max(least);
         loop {
             let blocks = divided(self.turns, longest);
             if blocks.len() <= MOST || longest > AFTER / 4 {

@@ -10,7 +10,7 @@ const IMPULSE_RADPS: f64 = 1e-3;
 /// Share of the rows up to which the bearing turns around seldom.
 const SELDOM: f64 = 0.25;
 /// Rows of one turn, in the mean, from which on it is slow.
-const SLOWLY: usize = 16;
+pub(super) const SLOWLY: usize = 16;
 /// Rows for which the loop remembers a disturbance.
 const AFTER_TURNING: usize = 400;
 

@@ -1,8 +1,9 @@
 //! Whitening: each channel divided by the spectrum of its noise.
 //!
-//! Where the bearing turns around at once, [`Slips`] whitens the noise of the logged rate; where it does so slowly, that
-//! noise comes through the slope of the friction law: `P + s^2 W(f) |G(f)|^2`, P as in [`super::power`], s the torque that
-//! the rate's noise makes, W Wiener's filter: of noise and motion it leaves that much to be off.
+//! Where the bearing turns around, [`Slips`] whitens the noise of the logged rate; where it does so slowly, what they leave
+//! of that noise, and all of it where it turns around most of the time, comes through the slope of the friction law:
+//! `P + s^2 W(f) |G(f)|^2`, P as in [`super::power`], s the torque that the rate's noise makes, W Wiener's filter: of noise
+//! and motion it leaves that much to be off.
 
 use super::plans::Plans;
 use super::power::{Bands, Noise, Of, SEGMENT};
@@ -39,7 +40,7 @@ pub(crate) struct Loop<'a> {
     pub shapes: &'a [Shapes],
     /// Rows at which the bearing may turn around, and those just after.
     pub turning: &'a [bool],
-    /// s of the rate's noise as logged, in units of the impulse; zero where it is whitened turn by turn.
+    /// s of the rate's noise as logged, in units of the impulse; zero where all of it is whitened turn by turn.
     pub turning_noise: f64,
     /// What is left of that noise.
     pub rate_noise: &'a RateNoise,

@@ -18,11 +18,10 @@ pub(crate) const UNEXPLAINED: [f64; 2] = [0.5, 0.6];
 const RIVAL: f64 = 0.27;
 /// Least probability that is reported.
 const POSSIBLE: f64 = 0.002;
-/// What may be left where the bearing turns around slowly, or all the time: the noise of the rate is less well known
-/// there.
-const SLOWLY: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 30.0, strange_scale: 2.5 };
-/// The same where it turns around at once.
-const AT_ONCE: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 23.0, strange_scale: 1.5 };
+/// What may be left where the bearing turns around most of the time: the noise of the rate is less well known there.
+const TURNING: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 30.0, strange_scale: 2.5 };
+/// The same where it moves one way for long.
+const MOVING: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 23.0, strange_scale: 1.5 };
 /// How much more torques of no effect must take after a stop, and where the bearing turns around most of the time: a wrong
 /// beginning, and the noise of the rate, are like some of them.
 const WARY: f64 = 1.6;
@@ -42,7 +41,7 @@ pub(crate) struct Limits {
 
 impl Limits {
     pub(crate) fn of(problem: &Problem) -> Self {
-        let limits = if problem.turns_at_once { AT_ONCE } else { SLOWLY };
+        let limits = if problem.turns_mostly { TURNING } else { MOVING };
         let wary = if problem.record.comes_near_a_stop() || problem.turns_mostly { WARY } else { 1.0 };
         Self { strange: wary * limits.strange, ..limits }
     }
@@ -263,7 +262,7 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
             set.effects.push(effect);
         }
         if decision.verdict == Verdict::NoGap
-            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 10.0 * SLOWLY.left_over
+            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 10.0 * TURNING.left_over
         {
             decision.verdict = Verdict::Explained;
             decision.unknown_probability = decision.unknown_probability.min(0.05);

@@ -17,9 +17,10 @@ const HEAT_S: f64 = 5.0;
 const SOFT: f64 = 0.02;
 
 /// What noise takes of torques that are functions of something, more than its spectrum says, as the bearing turns around
-/// slowly and at once; and of a slow torque in time, as noise wanders [nats].
+/// most of the time and as it does not; and what it takes of slow ones, as it wanders [nats].
 const WARY_NATS: [f64; 2] = [18.0, 0.0];
 const WANDERS_NATS: [f64; 2] = [40.0, 12.0];
+const SLOW: [&str; 2] = ["time", "specific force"];
 
 type Series = Vec<f64>;
 type Functions = (&'static str, Vec<Series>);
@@ -31,8 +32,8 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     functions.extend(motion.of_slip());
     functions.extend(motion.of_motor());
     functions.extend(motion.of_specific_force());
-    let way = usize::from(problem.turns_at_once);
-    let choice = |of: &str| if of == "time" { WANDERS_NATS[way] } else { WARY_NATS[way] };
+    let way = usize::from(!problem.turns_mostly);
+    let choice = |of: &str| if SLOW.contains(&of) { WANDERS_NATS[way] } else { WARY_NATS[way] };
     let mut groups: Vec<Group> =
         functions.into_iter().map(|(of, torques)| Group { of, choice: choice(of), torques }).collect();
     let drive = problem.path.drive(&problem.whitener, &fit.residual);

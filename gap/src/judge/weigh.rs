@@ -10,14 +10,6 @@ use crate::library::releases;
 /// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
 const COST: f64 = 18.0;
 pub(crate) const COST_OF_SHIFT: f64 = 15.0;
-/// What it takes more where the bearing turns around slowly: there the friction makes one of them of the noise of the
-/// rate [nats].
-const OFFSETS: [&str; 3] = ["float_torque", "g_sensitive_float_torque", "direction_asymmetry"];
-const COST_SLOWLY: f64 = 22.0;
-/// What acts as one of them does, and is made of no noise.
-const PLAIN_OFFSETS: [&str; 2] = ["constant_torque", "torque_bias"];
-/// Share of it that such an effect must bring to be likelier than not.
-const RARE_SLOWLY: f64 = 0.85;
 /// How much more where the bearing turns around most of the time: its friction is as good as unknown there.
 const TURNING: f64 = 2.0;
 /// Evidence from which on an effect is likelier than not, from logs with open answers [nats].
@@ -68,7 +60,6 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         .collect();
     let excess = (search.null.square - closest.square).max(1.0);
     worth_their_more(&mut all, LEAST_SHARE * excess, |index| search.fits[index].square);
-    as_plain_ones(&mut all);
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;
         if !all.iter().any(|set| set.effects == [effect]) {
@@ -77,21 +68,6 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         }
     }
     all
-}
-
-/// Where a plain offset would be named, there is one that noise did not make: what explains it better need bring no more.
-fn as_plain_ones(sets: &mut [Weighed]) {
-    let Some(plain) = best(sets, |set| set.nats - set.cost).cloned() else { return };
-    let stands_for = |set: &Weighed| {
-        let only = |of: &[&'static str], other: &[&str]| -> Vec<&'static str> {
-            of.iter().filter(|effect| !other.contains(effect)).copied().collect()
-        };
-        let [given, taken] = [only(&set.effects, &plain.effects), only(&plain.effects, &set.effects)];
-        matches!((&given[..], &taken[..]), ([given], [taken]) if OFFSETS.contains(given) && PLAIN_OFFSETS.contains(taken))
-    };
-    for set in sets.iter_mut().filter(|set| set.nats > plain.nats && stands_for(set)) {
-        (set.cost, set.rare) = (plain.cost, plain.rare);
-    }
 }
 
 /// The set that was fitted and has most of something, of those that have any.
@@ -123,19 +99,17 @@ pub(crate) fn names(fit: &Fit) -> Vec<&'static str> {
 
 fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
     let effects: Vec<&str> = set.iter().map(|&index| problem.candidates[index].effect).collect();
-    let (cost, rare) = costs_of(&effects, problem.turns_at_once);
-    if problem.turns_mostly { (TURNING * cost, TURNING * rare) } else { (cost, rare) }
+    costs_of(&effects, problem.turns_mostly)
 }
 
-/// What effects must bring to be named, and from where on they are likelier than not; whether bearings turn around at
-/// once.
-pub(crate) fn costs_of(effects: &[&str], turns_at_once: bool) -> (f64, f64) {
+/// What effects must bring to be named, and from where on they are likelier than not; whether the bearing turns around
+/// most of the time.
+pub(crate) fn costs_of(effects: &[&str], turns_mostly: bool) -> (f64, f64) {
     let shifts = effects.iter().filter(|effect| !releases(effect).is_empty()).count() as f64;
     let added = effects.len() as f64 - shifts;
     let beside = RARE_BESIDE * (effects.len() as f64 - 1.0).max(0.0);
-    let offsets = if turns_at_once { 0 } else { effects.iter().filter(|effect| OFFSETS.contains(effect)).count() };
-    let slowly = COST_SLOWLY * offsets as f64;
-    (COST * added + COST_OF_SHIFT * shifts + slowly, RARE * added + RARE_SHIFT * shifts + beside + RARE_SLOWLY * slowly)
+    let (cost, rare) = (COST * added + COST_OF_SHIFT * shifts, RARE * added + RARE_SHIFT * shifts + beside);
+    if turns_mostly { (TURNING * cost, TURNING * rare) } else { (cost, rare) }
 }
 
 /// Whether a set holds all of another one.

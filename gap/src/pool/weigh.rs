@@ -20,9 +20,9 @@ pub(super) fn weigh(
     promises: &[Promise],
     tolerance: &Tolerance,
 ) -> Vec<Weighed> {
-    let at_once = materials.iter().all(|material| material.problem.turns_at_once);
+    let turns_mostly = materials.iter().all(|material| material.problem.turns_mostly);
     let of = |(index, fitted): (usize, &Fitted)| {
-        let (cost, rare) = costs_of(&fitted.effects.names, at_once);
+        let (cost, rare) = costs_of(&fitted.effects.names, turns_mostly);
         let nats = fitted.worth()
             - null.worth()
             - alone(null, fits, fitted)
@@ -39,7 +39,7 @@ pub(super) fn weigh(
     for promise in promises {
         let effects = vec![promise.candidate.effect];
         if !all.iter().any(|set| set.effects == effects) {
-            let (cost, rare) = costs_of(&effects, at_once);
+            let (cost, rare) = costs_of(&effects, turns_mostly);
             all.push(Weighed { effects, fit: None, nats: promise.gain, cost, rare });
         }
     }
