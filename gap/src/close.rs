@@ -70,7 +70,9 @@ fn fitted(fit: &Fit, model: &ModelFile) -> Config {
 /// Adds an effect to those of the model: sizes add up, factors multiply.
 fn add(all: &mut Vec<ModelEffect>, effect: Effect, found: &Found) {
     let Some(known) = all.iter_mut().find(|known| known.effect == effect) else {
-        all.push(ModelEffect { effect, values: found.values.clone() });
+        // the file and the plant know one formulation of each
+        let values = found.values.iter().copied().take(effect.parameters().len()).collect();
+        all.push(ModelEffect { effect, values });
         return;
     };
     for (known, value) in known.values.iter_mut().zip(&found.values).take(effect.sizes()) {

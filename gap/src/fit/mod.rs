@@ -1,6 +1,7 @@
 //! Fitting: whitened residuals, sensitivities, normal equations, and the search over effects.
 
 mod draft;
+mod formulations;
 mod gross;
 mod ground;
 mod heavy;

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::formulations::extend;
 use super::gross::gross;
 use super::heavy::heavy;
-use super::hypothesis::{Point, left};
 use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::refine::Effort;
@@ -54,8 +54,6 @@ pub struct Glimpse {
 /// Refined singles, and refined extensions of each of the best.
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
-/// Formulations of an effect that are fitted.
-const FORMULATIONS: usize = 2;
 /// A predicted torque that comes so near the highest that was measured, over it, may have met a ceiling.
 const NEAR: f64 = 0.98;
 
@@ -219,13 +217,13 @@ pub(crate) fn same(problem: &Problem, a: &Set, b: &Set) -> bool {
 
 /// One candidate more.
 #[derive(Debug, Clone)]
-struct Extension {
+pub(super) struct Extension {
     /// The candidate.
-    index: usize,
+    pub(super) index: usize,
     /// Linear evidence over the fit that it extends [nats].
     gain: f64,
     /// What the linear fit makes of its columns.
-    amplitudes: Vec<f64>,
+    pub(super) amplitudes: Vec<f64>,
 }
 
 /// Every candidate more, at a fit.
@@ -298,7 +296,7 @@ fn best_by_effect(problem: &Problem, mut order: Vec<Extension>, count: usize) ->
 }
 
 /// Keeps the first of each kind.
-fn first_of_each<T, K: PartialEq>(all: &mut Vec<T>, kind: impl Fn(&T) -> K) {
+pub(super) fn first_of_each<T, K: PartialEq>(all: &mut Vec<T>, kind: impl Fn(&T) -> K) {
     let mut seen: Vec<K> = Vec::new();
     all.retain(|one| {
         let own = kind(one);
@@ -308,45 +306,4 @@ fn first_of_each<T, K: PartialEq>(all: &mut Vec<T>, kind: impl Fn(&T) -> K) {
         }
         new
     });
-}
-
-fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {
-    let candidate = &problem.candidates[extension.index];
-    // a chord of pre-sliding misleads: its settings are tried as they are, and before a fit its formulations are hardly
-    // told apart
-    let starts = if candidate.effect == "presliding" {
-        settings(problem, from, candidate.effect)
-    } else {
-        vec![(extension.index, candidate.values(&extension.amplitudes))]
-    };
-    let fitted = |(index, own): (usize, Vec<f64>)| {
-        let (set, values) = extended(from, index, own);
-        refine(problem, &set, &values, Some(from), Effort::Quick)
-    };
-    let fits = starts.into_par_iter().map(fitted);
-    fits.min_by(|a, b| (a.square + a.prior).total_cmp(&(b.square + b.prior)))
-}
-
-/// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does.
-fn settings(problem: &Problem, from: &Fit, effect: &str) -> Vec<(usize, Vec<f64>)> {
-    let of_effect = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
-    let places: Vec<(usize, Vec<f64>)> =
-        of_effect.map(|(index, candidate)| (index, candidate.probes[0].0.clone())).collect();
-    let tried = |(index, own): &(usize, Vec<f64>)| {
-        let (set, values) = extended(from, *index, own.clone());
-        (set, Point { values, ..from.point(problem) })
-    };
-    let tries: Vec<(Set, Point)> = places.iter().map(tried).collect();
-    let mut all: Vec<(f64, (usize, Vec<f64>))> = left(problem, &tries).into_iter().zip(places).collect();
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    first_of_each(&mut all, |(_, (_, own))| own.get(1).copied());
-    all.into_iter().take(FORMULATIONS).map(|(_, setting)| setting).collect()
-}
-
-/// A fit's set and values with one candidate more.
-fn extended(from: &Fit, index: usize, own: Vec<f64>) -> (Set, Vec<Vec<f64>>) {
-    let (mut set, mut values) = (from.set.clone(), from.values.clone());
-    set.0.push(index);
-    values.push(own);
-    (set, values)
 }

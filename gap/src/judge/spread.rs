@@ -18,7 +18,7 @@ use crate::fit::{Fit, Hypothesis, Linear, Problem, solve, standard_errors};
 /// follows hangs.
 const MEANINGS: [(&str, &str, f64); 6] = [
     ("presliding", "displacement_rad", 0.1),
-    ("cable_hysteresis", "displacement_rad", 0.2),
+    ("cable_hysteresis", "displacement_rad", 0.15),
     ("cable_hysteresis", "torque_nm", 0.1),
     ("friction_drift", "time_constant_s", 0.15),
     ("friction_drift", "ratio", 0.05),

@@ -1,6 +1,6 @@
 //! An effect by its name and values, put into the physics; values as in the plant's table.
 
-use crate::simulate::{BuildUp, Hysteresis, Physics, Ripple};
+use crate::simulate::{BuildUp, Hysteresis, Loop, Physics, Ripple};
 
 /// Adds an effect to the physics. Unknown names change nothing.
 pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
@@ -30,7 +30,11 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
         }
         "anisoelasticity" => physics.anisoelasticity += v(0),
         "cable_spring" => physics.spring_nm_per_rad += v(0),
-        "cable_hysteresis" => physics.hysteresis = Some(Hysteresis { torque_nm: v(0), displacement_rad: v(1) }),
+        "cable_hysteresis" => {
+            // a third value says how it is formulated
+            let formulation = if v(2) > 0.5 { Loop::Stops } else { Loop::BoucWen };
+            physics.hysteresis = Some(Hysteresis { torque_nm: v(0), displacement_rad: v(1), formulation });
+        }
         "torque_ripple" => {
             let (sine, cosine) = v(2).sin_cos();
             physics.ripple = Some(Ripple { sine_nm: v(0) * cosine, cosine_nm: v(0) * sine, cycles: v(1) });

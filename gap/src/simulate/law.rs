@@ -2,6 +2,7 @@
 
 use super::Physics;
 use super::bearing::Viscous;
+use super::cable::Stops;
 use super::chain::{PHI, PHI_RATE};
 use super::inputs::turned;
 use super::lanes::{Lanes, side, within};
@@ -261,17 +262,19 @@ impl<'a, const L: usize> Law<'a, L> {
         torque
     }
 
-    /// The cable's loop after the gimbal has turned.
+    /// The cable's stops where a run begins.
+    pub(super) fn stops(&self, share: Lanes<L>) -> Stops<L> {
+        Stops::new(self.physics.iter().filter_map(|own| own.hysteresis), share)
+    }
+
+    /// Share of the cable's loop after the gimbal has turned.
     #[inline(always)]
-    pub(super) fn hysteresis_after(&self, z: Lanes<L>, turned: Lanes<L>) -> Lanes<L> {
+    pub(super) fn hysteresis_after(&self, z: Lanes<L>, turned_rad: Lanes<L>, stops: &mut Stops<L>) -> Lanes<L> {
         let mut after = z;
         for lane in 0..L {
-            let Some(cable) = self.physics[lane].hysteresis else { continue };
-            let (z, turned) = (z[lane], turned[lane]);
-            let slope = |z: f64| if z * turned > 0.0 { 1.0 - z * z } else { 1.0 };
-            let moved = turned / cable.displacement_rad;
-            let half = z + 0.5 * moved * slope(z);
-            after[lane] = (z + moved * slope(half)).clamp(-1.0, 1.0);
+            if let Some(cable) = self.physics[lane].hysteresis {
+                after[lane] = cable.after(lane, z[lane], turned_rad[lane], stops);
+            }
         }
         after
     }

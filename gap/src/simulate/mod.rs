@@ -5,6 +5,7 @@
 //! float is on a stop. A test holds it against the plant.
 
 mod bearing;
+mod cable;
 mod chain;
 mod discrete;
 mod inputs;
@@ -19,5 +20,5 @@ mod sprung;
 
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
-pub use physics::{BuildUp, Friction, Hysteresis, Measurement, Physics, Ripple};
+pub use physics::{BuildUp, Friction, Hysteresis, Loop, Measurement, Physics, Ripple};
 pub use predict::{Begin, Prediction, Variant, predict, predict_each};

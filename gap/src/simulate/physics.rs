@@ -19,7 +19,7 @@ pub struct Physics {
     pub turned_rad: [f64; 3],
     /// Spring of the cable [N m/rad].
     pub spring_nm_per_rad: f64,
-    /// Bouc-Wen loop of the cable.
+    /// Loop of the cable.
     pub hysteresis: Option<Hysteresis>,
     /// Ripple in rel.
     pub ripple: Option<Ripple>,
@@ -87,6 +87,18 @@ pub struct Hysteresis {
     pub torque_nm: f64,
     /// Displacement of the initial stiffness [rad].
     pub displacement_rad: f64,
+    /// How it is formulated.
+    pub formulation: Loop,
+}
+
+/// How the cable's loop is formulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Loop {
+    /// One smooth law.
+    #[default]
+    BoucWen,
+    /// Stops in parallel that yield one after the other.
+    Stops,
 }
 
 /// `s sin(n rel) + c cos(n rel)`.

@@ -248,6 +248,10 @@ mod tests {
                 apply(effect, &entry.typical(), &mut own);
                 all.push(own);
             }
+            let mut stops = base.clone();
+            stops.friction.load_factor += share;
+            apply("cable_hysteresis", &[6e-4, 0.05, 1.0], &mut stops);
+            all.push(stops);
             for way in [1.0, 2.0, 3.0] {
                 let mut own = base.clone();
                 own.friction.load_factor += share;
