@@ -3,7 +3,7 @@
 use gimbal_log::Log;
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Fit, Ground, Known, Problem, Search, Tried, null, raw_residual, search, without};
+use crate::fit::{Fit, Known, Tried, raw_residual, without};
 use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Spread, Verdict, Yardstick, bounds_hit,
     correlations, curve, decide, detectable, free_running, one_step, portrait, shrink,
@@ -11,13 +11,7 @@ use crate::judge::{
 use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
 use crate::record::{Data, Record, faults};
-
-/// A fit may leave this much of the noise that was expected, and no less.
-const TOO_QUIET: f64 = 0.98;
-/// How sure it must be that noise of low frequency was taken too high: few lines that hide what is slow [nats].
-const TOO_HIGH: f64 = 8.0;
-/// How often the noise is taken again.
-const AGAIN: usize = 2;
+use crate::settle::{Settled, settled};
 
 /// No fit that leaves more than this of the noise comes near a log.
 const ASTRAY: f64 = 1.5;
@@ -223,52 +217,6 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         curve,
         asked: Some(asked),
     }
-}
-
-/// A search whose noise stands.
-pub(crate) struct Settled<'a> {
-    pub(crate) problem: Problem<'a>,
-    pub(crate) search: Search,
-    known: Option<Known>,
-}
-
-/// The search, under a noise that its best fit does not stay below: one that does says that the noise was taken too
-/// high, and that what an effect did, or what the nominal parameters could not take away at once, was in it.
-pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
-    let quiet = |problem: &Problem, fit: &Fit| {
-        fit.square < TOO_QUIET * problem.whitener.count() as f64
-            || problem.whitener.too_high(&fit.residual, record.inputs.period_s) > TOO_HIGH
-    };
-    let raw = |fit: &Fit| raw_residual(record, &fit.prediction);
-    let left = |best: &Fit, null: &Fit| Some(Known { noise: raw(best), gap: raw(null) });
-    let mut ground = Ground::new(record, model);
-    let mut known = None;
-    let mut problem = ground.problem(None);
-    let mut nominal = null(&problem, None);
-    if quiet(&problem, &nominal) {
-        drop(problem);
-        known = left(&nominal, &nominal);
-        problem = ground.problem(known.clone());
-        nominal = null(&problem, Some(&nominal));
-    }
-    let mut found = search(&mut problem, nominal);
-    for more in (0..AGAIN).rev() {
-        let best = found.closest();
-        if !quiet(&problem, best) {
-            break;
-        }
-        known = left(best, &found.null);
-        let from = found.null;
-        // what is not needed any more is most of the memory
-        drop((problem, found.fits));
-        problem = ground.problem(known.clone());
-        if more == 0 {
-            ground.forget();
-        }
-        nominal = null(&problem, Some(&from));
-        found = search(&mut problem, nominal);
-    }
-    Settled { problem, search: found, known }
 }
 
 /// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.

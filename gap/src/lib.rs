@@ -25,6 +25,7 @@ pub mod place;
 pub mod pool;
 pub mod record;
 pub mod report;
+mod settle;
 pub mod simulate;
 
 pub use diagnose::{Diagnosis, diagnose};

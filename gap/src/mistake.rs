@@ -7,10 +7,10 @@
 
 use gimbal_model_file::ModelFile;
 
-use crate::diagnose::{Settled, settled};
 use crate::fit::raw_residual;
 use crate::judge::{Verdict, decide};
 use crate::record::Record;
+use crate::settle::{Settled, settled};
 
 /// What counts as less, in logarithms of an rms a channel.
 const LESS: f64 = 0.05;

@@ -32,7 +32,7 @@ impl Search {
     /// The fit that leaves least.
     #[must_use]
     pub fn closest(&self) -> &Fit {
-        self.fits.iter().fold(&self.null, |best, fit| if fit.square < best.square { fit } else { best })
+        closest(&self.null, &self.fits)
     }
 
     /// The noise that it leaves, over that of the sensors.
@@ -54,6 +54,8 @@ pub struct Glimpse {
 /// Refined singles, and refined extensions of each of the best.
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
+/// Most effects of a set.
+const MOST: usize = 3;
 /// A predicted torque that comes so near the highest that was measured, over it, may have met a ceiling.
 const NEAR: f64 = 0.98;
 
@@ -61,24 +63,67 @@ const NEAR: f64 = 0.98;
 #[must_use]
 pub fn search(problem: &mut Problem, null: Fit) -> Search {
     rebase(problem, &null);
-    let (mut fits, glimpses) = sets(problem, &null);
-    if let Some(best) = fits.first() {
-        rebase(problem, best);
+    look(problem, null).finished(problem)
+}
+
+/// Sets of effects that were fitted far enough to be compared.
+#[derive(Debug)]
+pub(crate) struct Looked {
+    pub(crate) null: Fit,
+    fits: Vec<Fit>,
+    glimpses: Vec<Glimpse>,
+}
+
+/// The first half of a search, by the sensitivities at the fit of the nominal parameters.
+pub(crate) fn look(problem: &Problem, null: Fit) -> Looked {
+    let (fits, glimpses) = sets(problem, &null);
+    Looked { null, fits, glimpses }
+}
+
+impl Looked {
+    /// The fit that leaves least.
+    pub(crate) fn closest(&self) -> &Fit {
+        closest(&self.null, &self.fits)
     }
-    let problem = &*problem;
-    // what is close to the best is brought to its end before it is judged
-    let gain = |fit: &Fit| null.square - fit.square;
-    let least = fits.first().map_or(0.0, |best| CLOSE * gain(best));
-    let close = |(place, fit): &(usize, &mut Fit)| *place < POLISHED && gain(fit) >= least;
-    let last: Vec<(usize, &mut Fit)> = fits.iter_mut().enumerate().filter(close).collect();
-    last.into_par_iter().for_each(|(_, fit)| polish(problem, fit));
-    sort(problem, &null, &mut fits);
-    without_idle(problem, &null, &mut fits);
-    let (null, moved) = from_there(problem, null, &fits);
-    // what single effects seemed to bring may have been the way that the nominal parameters found meanwhile
-    let glimpses =
-        if moved { seen(&best_by_effect(problem, extensions(problem, &null), usize::MAX)) } else { glimpses };
-    Search { null, fits, glimpses }
+
+    /// That fit alone.
+    pub(crate) fn into_closest(self) -> Fit {
+        self.fits.into_iter().fold(self.null, |best, fit| if fit.square < best.square { fit } else { best })
+    }
+
+    /// The second half: what is close to the best is brought to its end before it is judged.
+    pub(crate) fn finished(self, problem: &mut Problem) -> Search {
+        let Self { null, mut fits, glimpses } = self;
+        if let Some(best) = fits.first() {
+            rebase(problem, best);
+        }
+        let problem = &*problem;
+        let gain = |fit: &Fit| null.square - fit.square;
+        let least = fits.first().map_or(0.0, |best| CLOSE * gain(best));
+        let close = |(place, fit): &(usize, &mut Fit)| *place < POLISHED && gain(fit) >= least;
+        let last: Vec<(usize, &mut Fit)> = fits.iter_mut().enumerate().filter(close).collect();
+        last.into_par_iter().for_each(|(_, fit)| polish(problem, fit));
+        sort(problem, &null, &mut fits);
+        without_idle(problem, &null, &mut fits);
+        let (null, moved) = from_there(problem, null, &fits);
+        // what single effects seemed to bring may have been the way that the nominal parameters found meanwhile
+        let glimpses =
+            if moved { seen(&best_by_effect(problem, extensions(problem, &null), usize::MAX)) } else { glimpses };
+        Search { null, fits, glimpses }
+    }
+}
+
+/// A fit at its end, by the sensitivities there.
+pub(crate) fn ended(problem: &mut Problem, mut fit: Fit) -> Fit {
+    if !fit.set.0.is_empty() {
+        rebase(problem, &fit);
+        polish(problem, &mut fit);
+    }
+    fit
+}
+
+fn closest<'a>(null: &'a Fit, fits: &'a [Fit]) -> &'a Fit {
+    fits.iter().fold(null, |best, fit| if fit.square < best.square { fit } else { best })
 }
 
 /// The nominal parameters alone, from where another fit has them.
@@ -103,7 +148,7 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
             .filter_map(|extension| extend(problem, null, extension)),
     );
     sort(problem, null, &mut fits);
-    for size in 1..3 {
+    for size in 1..MOST {
         let seeds: Vec<&Fit> =
             fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
         let wider: Vec<Fit> = seeds

@@ -1,0 +1,123 @@
+//! A search under a noise that its best fit does not stay below: one that does says that the noise was taken too high,
+//! and that what an effect did, or what the nominal parameters could not take away at once, was in it.
+//!
+//! Where a first look at the library shows that, the noise is measured again at once, from what its best fit leaves, and
+//! once more where the same effects still stay below it. The whole search is for the noise that stands.
+
+use gimbal_model_file::ModelFile;
+
+use crate::fit::{Effort, Fit, Ground, Known, Problem, Search, Set, ended, look, null, raw_residual, rebase, refine};
+use crate::record::Record;
+
+/// A fit may leave this much of the noise that was expected, and no less.
+const TOO_QUIET: f64 = 0.98;
+/// How sure it must be that noise of low frequency was taken too high: few lines that hide what is slow [nats].
+const TOO_HIGH: f64 = 8.0;
+/// How often the noise is taken again.
+const AGAIN: usize = 2;
+
+/// A search whose noise stands.
+pub(crate) struct Settled<'a> {
+    pub(crate) problem: Problem<'a>,
+    pub(crate) search: Search,
+    /// What the noise was taken from; none is what the nominal parameters and a few effects do not explain.
+    pub(crate) known: Option<Known>,
+}
+
+/// The search whose noise stands.
+pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
+    let mut on = Measured::new(Ground::new(record, model));
+    loop {
+        let looked = look(&on.problem, on.nominal.clone());
+        let best = if on.may_be_beaten_by(looked.closest()) {
+            let best = looked.into_closest();
+            ended(&mut on.problem, best)
+        } else {
+            let search = looked.finished(&mut on.problem);
+            if !on.may_be_beaten_by(search.closest()) {
+                return Settled { problem: on.problem, search, known: on.known };
+            }
+            let best = search.closest().clone();
+            on.nominal = search.null;
+            best
+        };
+        on = on.again_until_it_stands(best);
+    }
+}
+
+/// A problem under a noise, by the sensitivities at the fit of the nominal parameters.
+struct Measured<'a> {
+    ground: Ground<'a>,
+    known: Option<Known>,
+    problem: Problem<'a>,
+    nominal: Fit,
+    /// How often the noise may be taken again.
+    more: usize,
+    /// Square that the fit which left this noise leaves under it; endless where that is not known.
+    stands_at: f64,
+}
+
+impl<'a> Measured<'a> {
+    fn new(ground: Ground<'a>) -> Self {
+        let problem = ground.problem(None);
+        let nominal = null(&problem, None);
+        let mut on = Self { ground, known: None, problem, nominal, more: AGAIN, stands_at: f64::INFINITY };
+        if on.is_beaten_by(&on.nominal) {
+            let best = on.nominal.clone();
+            return on.again(&best);
+        }
+        rebase(&mut on.problem, &on.nominal);
+        on
+    }
+
+    /// Whether a fit leaves less than the noise.
+    fn is_beaten_by(&self, fit: &Fit) -> bool {
+        let whitener = &self.problem.whitener;
+        fit.square < TOO_QUIET * whitener.count() as f64
+            || whitener.too_high(&fit.residual, self.problem.record.inputs.period_s) > TOO_HIGH
+    }
+
+    /// The same, as long as the noise may be measured again and would not be what it is.
+    fn may_be_beaten_by(&self, fit: &Fit) -> bool {
+        self.more > 0 && fit.square < self.stands_at - 2.0 * TOO_HIGH && self.is_beaten_by(fit)
+    }
+
+    /// Under the noise that a fit leaves.
+    fn again(self, best: &Fit) -> Self {
+        let Self { ground, problem, nominal, more, .. } = self;
+        let raw = |fit: &Fit| raw_residual(problem.record, &fit.prediction);
+        let known = Some(Known { noise: raw(best), gap: raw(&nominal) });
+        // what is not needed any more is most of the memory
+        drop(problem);
+        let mut problem = ground.problem(known.clone());
+        let nominal = null(&problem, Some(&nominal));
+        rebase(&mut problem, &nominal);
+        Self { ground, known, problem, nominal, more, stands_at: f64::INFINITY }
+    }
+
+    /// Once more, and again where the same effects stay below that noise too.
+    fn again_until_it_stands(self, mut best: Fit) -> Self {
+        let mut on = self;
+        loop {
+            on = on.again(&best);
+            on.more -= 1;
+            if on.more == 0 {
+                on.ground.forget();
+                return on;
+            }
+            let Some(still) = carried(&on.problem, &best) else { return on };
+            if !on.is_beaten_by(&still) {
+                on.stands_at = still.square;
+                return on;
+            }
+            best = still;
+        }
+    }
+}
+
+/// A fit under another noise, if its effects are looked for there.
+fn carried(problem: &Problem, fit: &Fit) -> Option<Fit> {
+    let place = |effect: &&str| problem.candidates.iter().position(|candidate| candidate.effect == *effect);
+    let set = Set(fit.effects.iter().map(place).collect::<Option<_>>()?);
+    Some(refine(problem, &set, &fit.values, Some(fit), Effort::Full))
+}
