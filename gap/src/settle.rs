@@ -30,7 +30,8 @@ pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> 
     loop {
         let looked = look(&on.problem, on.nominal.clone());
         let best = if on.may_be_beaten_by(looked.closest()) {
-            let best = looked.into_closest();
+            let best = looked.closest().clone();
+            drop(looked);
             ended(&mut on.problem, best)
         } else {
             let search = looked.finished(&mut on.problem);

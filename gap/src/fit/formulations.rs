@@ -6,12 +6,10 @@ use super::hypothesis::{Point, left};
 use super::refine::Effort;
 use super::search::{Extension, first_of_each};
 use super::{Fit, Problem, Set, refine};
+use crate::library::NAMED;
 
 /// Formulations of an effect that are fitted.
 const FORMULATIONS: usize = 2;
-/// What a loop of the cable must bring for another formulation of it to be tried: an effect that brings less is not
-/// named [nats].
-const NAMED: f64 = 18.0;
 /// Displacement at which stops come nearest to Bouc-Wen's outer loop, over the one that it has (least squares).
 const STOPS_ALONG: f64 = 0.8;
 
@@ -31,6 +29,7 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
     };
     let closer = |a: &Fit, b: &Fit| cost(a).total_cmp(&cost(b));
     let closest = starts.into_par_iter().map(fitted).min_by(closer)?;
+    // another formulation of the cable's loop is tried where the first could be named
     if candidate.effect != "cable_hysteresis" || cost(from) - cost(&closest) < 2.0 * NAMED {
         return Some(closest);
     }

@@ -69,7 +69,7 @@ pub fn search(problem: &mut Problem, null: Fit) -> Search {
 /// Sets of effects that were fitted far enough to be compared.
 #[derive(Debug)]
 pub(crate) struct Looked {
-    pub(crate) null: Fit,
+    null: Fit,
     fits: Vec<Fit>,
     glimpses: Vec<Glimpse>,
 }
@@ -84,11 +84,6 @@ impl Looked {
     /// The fit that leaves least.
     pub(crate) fn closest(&self) -> &Fit {
         closest(&self.null, &self.fits)
-    }
-
-    /// That fit alone.
-    pub(crate) fn into_closest(self) -> Fit {
-        self.fits.into_iter().fold(self.null, |best, fit| if fit.square < best.square { fit } else { best })
     }
 
     /// The second half: what is close to the best is brought to its end before it is judged.

@@ -5,10 +5,9 @@ use gimbal_plant::{Bound, Effect, Parameter};
 
 use super::stretch::carried_alone;
 use crate::fit::{Fit, Problem, Search};
-use crate::library::releases;
+use crate::library::{NAMED, releases};
 
-/// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
-const COST: f64 = 18.0;
+/// Evidence that a nominal parameter beyond its tolerance must bring to be named [nats].
 pub(crate) const COST_OF_SHIFT: f64 = 15.0;
 /// How much more where the bearing turns around most of the time: its friction is as good as unknown there.
 const TURNING: f64 = 2.0;
@@ -108,7 +107,7 @@ pub(crate) fn costs_of(effects: &[&str], turns_mostly: bool) -> (f64, f64) {
     let shifts = effects.iter().filter(|effect| !releases(effect).is_empty()).count() as f64;
     let added = effects.len() as f64 - shifts;
     let beside = RARE_BESIDE * (effects.len() as f64 - 1.0).max(0.0);
-    let (cost, rare) = (COST * added + COST_OF_SHIFT * shifts, RARE * added + RARE_SHIFT * shifts + beside);
+    let (cost, rare) = (NAMED * added + COST_OF_SHIFT * shifts, RARE * added + RARE_SHIFT * shifts + beside);
     if turns_mostly { (TURNING * cost, TURNING * rare) } else { (cost, rare) }
 }
 

@@ -21,6 +21,8 @@ pub struct Candidate {
 
 /// Evidence that linear equations must promise for a fit, and for that of a nominal parameter beyond its tolerance [nats].
 pub(crate) const PROMISE: f64 = 8.0;
+/// Evidence that an effect must bring to be named; a nominal parameter beyond its tolerance needs less [nats].
+pub(crate) const NAMED: f64 = 18.0;
 const PROMISE_OF_SHIFT: f64 = 3.0;
 /// Effects that are not linear in their size, and the least and the largest share of the size at which they are tried that
 /// equations may give them.

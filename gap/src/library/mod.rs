@@ -7,6 +7,6 @@ mod nuisance;
 
 pub use apply::apply;
 pub use candidates::{Candidate, Offer, candidates, narrow};
-pub(crate) use candidates::{MODE_DAMPING, PROMISE, releases};
+pub(crate) use candidates::{MODE_DAMPING, NAMED, PROMISE, releases};
 pub use model::{hold, not_looked_for, platform};
 pub use nuisance::{Nuisance, nuisances};

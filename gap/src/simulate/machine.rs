@@ -5,7 +5,6 @@
 
 use std::cell::OnceCell;
 
-use super::cable::Stops;
 use super::chain::{FULL, PHI, PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
 use super::discrete::{DIVISIONS, Step, Steps, add};
 use super::lanes::Lanes;
@@ -91,11 +90,10 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let mut out: [Prediction; L] = std::array::from_fn(|_| Prediction::zero(rows));
         let mut now = self.now(0);
         let mut state = self.begin(begin, &now);
-        let mut stops = self.law.stops(state.hysteresis);
         for k in 0..rows {
             if k > 0 {
                 let next = self.now(k);
-                self.row(&mut state, &mut stops, &now, &next);
+                self.row(&mut state, &now, &next);
                 now = next;
             }
             let theta = self.law.seen(state.x[THETA]);
@@ -127,12 +125,22 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let hysteresis = Lanes::each(|lane| begin[lane].hysteresis);
         let others = self.law.others(now, &x, hysteresis, |x| self.command_nm(x));
         let u = [friction + others, self.law.float_nm(now), self.law.seen(x[THETA]) - x[THETA]];
-        Running { x, u, w, friction, zeta, sprung: [zeta; ELEMENTS], hysteresis, stop: [0; L] }
+        Running {
+            x,
+            u,
+            w,
+            friction,
+            zeta,
+            sprung: [zeta; ELEMENTS],
+            hysteresis,
+            stops: self.law.stops(hysteresis),
+            stop: [0; L],
+        }
     }
 
     /// One row: full steps where nothing turns around, shorter ones elsewhere.
     #[inline(always)]
-    fn row(&self, state: &mut Running<N, L>, stops: &mut Stops<L>, now: &Now<L>, next: &Now<L>) {
+    fn row(&self, state: &mut Running<N, L>, now: &Now<L>, next: &Now<L>) {
         let mut from = *now;
         for part in 1..=self.full_steps {
             let to = if part == self.full_steps {
@@ -141,14 +149,13 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
                 now.toward(next, f64::from(part) / f64::from(self.full_steps))
             };
             match if self.is_calm(state, &to) { Some(FULL_STEP) } else { self.common_division(state, &to) } {
-                Some(division) => self.divided(state, stops, &from, &to, division),
+                Some(division) => self.divided(state, &from, &to, division),
                 None => {
                     for (lane, alone) in self.alone.iter().enumerate() {
-                        let (mut one, mut own, to) = (state.of(lane), stops.of(lane), to.of(lane));
+                        let (mut one, to) = (state.of(lane), to.of(lane));
                         let division = alone.division(&one, &to, 0);
-                        alone.divided(&mut one, &mut own, &from.of(lane), &to, division);
+                        alone.divided(&mut one, &from.of(lane), &to, division);
                         state.put(lane, &one);
-                        stops.put(lane, &own);
                     }
                 }
             }
@@ -158,11 +165,11 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
 
     /// A full step in its parts.
     #[inline(always)]
-    fn divided(&self, state: &mut Running<N, L>, stops: &mut Stops<L>, from: &Now<L>, to: &Now<L>, division: usize) {
+    fn divided(&self, state: &mut Running<N, L>, from: &Now<L>, to: &Now<L>, division: usize) {
         let parts = DIVISIONS[division];
         for part in 1..=parts {
             let end = if part == parts { *to } else { from.toward(to, f64::from(part) / f64::from(parts)) };
-            self.step(state, stops, &end, division);
+            self.step(state, &end, division);
             self.contact(state);
         }
     }
@@ -214,7 +221,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
 
     /// One step; where some are on a stop and others are not, each by itself.
     #[inline(always)]
-    fn step(&self, state: &mut Running<N, L>, stops: &mut Stops<L>, to: &Now<L>, division: usize) {
+    fn step(&self, state: &mut Running<N, L>, to: &Now<L>, division: usize) {
         let stop = state.stop[0];
         let mut apart = false;
         for lane in 0..L {
@@ -222,18 +229,17 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         }
         if L > 1 && apart {
             for (lane, alone) in self.alone.iter().enumerate() {
-                let (mut one, mut own) = (state.of(lane), stops.of(lane));
-                alone.step_by(&mut one, &mut own, &to.of(lane), division);
+                let mut one = state.of(lane);
+                alone.step_by(&mut one, &to.of(lane), division);
                 state.put(lane, &one);
-                stops.put(lane, &own);
             }
         } else {
-            self.step_by(state, stops, to, division);
+            self.step_by(state, to, division);
         }
     }
 
     #[inline(always)]
-    fn step_by(&self, state: &mut Running<N, L>, stops: &mut Stops<L>, to: &Now<L>, division: usize) {
+    fn step_by(&self, state: &mut Running<N, L>, to: &Now<L>, division: usize) {
         let step = if state.stop[0] == 0 { &self.free[division] } else { &self.held()[division] };
         let law = &self.law;
         let mut x = step.free(&state.x, &state.u);
@@ -243,7 +249,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let mut hysteresis = state.hysteresis;
         if law.has_hysteresis {
             let turned_rad = 0.5 * self.step_s(division) * (state.w + ahead);
-            hysteresis = law.hysteresis_after(hysteresis, turned_rad, stops);
+            hysteresis = law.hysteresis_after(hysteresis, turned_rad, &mut state.stops);
         }
         let others = law.others(to, &guess, hysteresis, |x| self.command_nm(x));
         let float_nm = law.float_nm(to);

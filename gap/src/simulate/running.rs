@@ -1,5 +1,6 @@
 //! What changes while a machine runs.
 
+use super::cable::Stops;
 use super::chain::INPUTS;
 use super::lanes::Lanes;
 use super::sprung::ELEMENTS;
@@ -17,7 +18,9 @@ pub(super) struct Running<const N: usize, const L: usize> {
     pub(super) zeta: Lanes<L>,
     /// Forces of the springs before the friction, where there are any.
     pub(super) sprung: [Lanes<L>; ELEMENTS],
+    /// Share of the full torque of the cable's loop, and the stops that it is made of, where there are any.
     pub(super) hysteresis: Lanes<L>,
+    pub(super) stops: Stops<L>,
     /// -1, 0, 1.
     pub(super) stop: [i8; L],
 }
@@ -33,6 +36,7 @@ impl<const N: usize, const L: usize> Running<N, L> {
             zeta: Lanes::all(self.zeta[lane]),
             sprung: self.sprung.map(|sprung| Lanes::all(sprung[lane])),
             hysteresis: Lanes::all(self.hysteresis[lane]),
+            stops: self.stops.of(lane),
             stop: [self.stop[lane]],
         }
     }
@@ -46,6 +50,7 @@ impl<const N: usize, const L: usize> Running<N, L> {
         self.zeta[lane] = one.zeta[0];
         self.sprung.iter_mut().zip(&one.sprung).for_each(|(all, one)| all[lane] = one[0]);
         self.hysteresis[lane] = one.hysteresis[0];
+        self.stops.put(lane, &one.stops);
         self.stop[lane] = one.stop[0];
     }
 }
