@@ -5,7 +5,7 @@ use gimbal_model_file::ModelFile;
 
 use crate::fit::{Fit, Known, Tried, raw_residual, without};
 use crate::judge::{
-    Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Spread, Verdict, Yardstick, bounds_hit,
+    Correlation, CurvePoint, Decision, Detectable, Portrait, READ_OFF, Shrink, Spread, Verdict, Yardstick, bounds_hit,
     correlations, curve, decide, detectable, free_running, one_step, portrait, shrink,
 };
 use crate::mistake::mistaken;
@@ -230,7 +230,8 @@ fn contradicted(decision: &mut Decision, shrink: &Shrink) -> bool {
     let nothing_gone = shrink.signals.iter().all(|signal| signal.ci95_percent[0] <= 0.0);
     let contradicted = match decision.verdict {
         Verdict::NoGap => beyond(NO_NOISE),
-        _ => !decision.found.is_empty() && nothing_gone && beyond(NOTHING_GONE),
+        // what the samples show by themselves is in the prediction from the first
+        _ => decision.found.iter().any(|own| !READ_OFF.contains(&own.effect)) && nothing_gone && beyond(NOTHING_GONE),
     };
     if contradicted && !shrink.signals.is_empty() {
         let least = shrink.signals.iter().map(|signal| signal.after / signal.noise_floor).fold(f64::MAX, f64::min);

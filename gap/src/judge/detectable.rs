@@ -147,7 +147,7 @@ fn held_rad(problem: &Problem, least: f64, farthest: f64) -> Option<f64> {
     let held = |stop_rad: f64| {
         let clipped = theta_rad.iter().map(|value| value.clamp(-stop_rad, stop_rad));
         let seen: Vec<f64> = clipped.enumerate().map(|(k, value)| value + noise_rad(k)).collect();
-        plateau(&seen, problem.record.inputs.period_s).is_some()
+        plateau(&seen, problem.record.inputs.period_s, problem.stop_rad).is_some()
     };
     let first = peak_rad(theta_rad).min((1.0 - least) * problem.stop_rad);
     let last = (1.0 + farthest) * problem.stop_rad;

@@ -8,6 +8,9 @@ use super::weigh::BEYOND;
 use crate::fit::{Fit, Problem};
 use crate::record::Signal;
 
+/// Effects that they show.
+pub(crate) const READ_OFF: [&str; 2] = ["stop_angle", "pickoff_quantisation"];
+
 /// How far the stop is from where it should be, as a pick-off of this scale shows it, and the error of that.
 pub(super) fn stop_change(problem: &Problem, pickoff: f64, tolerance: &Tolerance) -> Option<(f64, f64)> {
     let plateau = problem.record.plateau_rad?;

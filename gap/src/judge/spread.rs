@@ -5,18 +5,22 @@
 //! ```
 //!
 //! A fit leads a nominal parameter to the end of its tolerance and holds it there; it is not known any better for that, so
-//! the walls that held it are no part of P.
+//! the walls that held it are no part of P. J says nothing along the common scale of all torques.
 
 use gimbal_plant::Effect;
 use nalgebra::DMatrix;
 
 use super::decide::Found;
+use super::scale::{common_scale, silent_along};
 use crate::fit::{Fit, Hypothesis, Linear, Problem, solve, standard_errors};
 
-/// How far apart the values lie that other formulations of an effect mean by the same parameter, relative: where a yield
-/// ends, what a loop encloses, when a slow change is over; and how far off a line leads from a ceiling, on which all that
-/// follows hangs.
-const MEANINGS: [(&str, &str, f64); 6] = [
+/// How far apart the values lie that other formulations of an effect mean by the same parameter, relative: with which power
+/// of the rate an excess dies away (1.5 to 2.5), where a yield ends, what a loop encloses, when a slow change is over, whether
+/// a spring hardens; and how far off a line leads from a ceiling, on which all that follows hangs.
+const MEANINGS: [(&str, &str, f64); 9] = [
+    ("stribeck", "excess_nm", 0.1),
+    ("stribeck", "rate_radps", 0.05),
+    ("cable_spring", "stiffness_nm_per_rad", 0.02),
     ("presliding", "displacement_rad", 0.1),
     ("cable_hysteresis", "displacement_rad", 0.15),
     ("cable_hysteresis", "torque_nm", 0.1),
@@ -67,7 +71,7 @@ impl Spread {
         }
         let (mut gram, mut drive) = Linear::of(problem).joined(&fit.sensitivities, &fit.residual);
         let temper = (fit.square / problem.whitener.count() as f64).max(1.0);
-        gram /= temper;
+        gram = silent_along(&(gram / temper), &common_scale(problem, &hypothesis, fit), &weights);
         drive /= temper;
         let chosen: Vec<usize> = (0..drive.len()).collect();
         let covariance = solve(&gram, &drive, &chosen, &weights)?.covariance;

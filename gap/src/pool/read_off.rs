@@ -5,12 +5,10 @@ use gimbal_plant::Effect;
 
 use super::values::{Shared, chance};
 use crate::diagnose::Diagnosis;
+use crate::judge::READ_OFF;
 
 /// Scatter less probable than this is drift.
 const BY_CHANCE: f64 = 0.01;
-
-/// Effects that are read off.
-pub(super) const READ_OFF: [&str; 2] = ["stop_angle", "pickoff_quantisation"];
 
 /// Each that a log shows.
 pub(super) fn read_off(diagnoses: &[Diagnosis], logs: &[usize]) -> Vec<Shared> {

@@ -87,7 +87,7 @@ fn own_sets(materials: &[Material], diagnoses: &[Diagnosis]) -> Vec<Tried> {
         let Some(decision) = &diagnoses[material.log].decision else { continue };
         for set in decision.ranking.iter().filter(|set| set.probability > PROBABLE) {
             let mut names = set.effects.clone();
-            names.retain(|name| !super::read_off::READ_OFF.contains(name));
+            names.retain(|name| !crate::judge::READ_OFF.contains(name));
             match sums.iter_mut().find(|(other, _)| *other == names) {
                 Some((_, sum)) => *sum += set.probability,
                 None => sums.push((names, set.probability)),

@@ -27,8 +27,6 @@ const LEAST_RATE_RADPS: f64 = 1.5e-3;
 const LEAST_ACCEL_MPS2: f64 = 0.1;
 /// Shares of the nominal stop between which the float may have touched it.
 const NEAR_STOP: [f64; 2] = [0.95, 1.05];
-/// Least share of the nominal stop at which a plateau is one.
-const LEAST_STOP: f64 = 0.2;
 
 /// A log on its grid.
 #[derive(Debug, Clone)]
@@ -204,10 +202,7 @@ impl Record {
         let period_s = self.inputs.period_s;
         let Some(theta) = self.channels.iter().find(|channel| channel.signal == Signal::GyroAngle) else { return };
         let (peak, stop) = (peak_rad(&theta.values), config.gyro.stop_angle_rad);
-        if peak < LEAST_STOP * stop {
-            return;
-        }
-        let plateau = plateau(&theta.values, period_s);
+        let plateau = plateau(&theta.values, period_s, stop);
         self.plateau_rad = plateau.as_ref().map(|plateau| plateau.level_rad);
         let on_stop = if let Some(plateau) = plateau {
             plateau.on_stop

@@ -1,10 +1,19 @@
 //! The stop, as the pick-off shows it: a plateau at its largest excursion.
 
-/// Share of its largest excursion within which the pick-off counts as on the stop.
+use super::rough::rough;
+
+/// Share of its largest excursion within which the pick-off counts as on the stop, or noise in which it does.
 const SHARE: f64 = 4e-3;
+const NOISES: f64 = 8.0;
 /// How far the rate before it would have carried the float until its middle, over that share: less than five for the
 /// smooth peak of any parabola.
 const ONWARD: f64 = 7.0;
+/// The same, and how far it came in as long a time as the shortest plateau has, over the scatter on the plateau: wherever
+/// the stop is, the float stands still on it as no peak does.
+const FLAT: f64 = 150.0;
+const ENTERS: f64 = 30.0;
+/// Least share of the nominal stop at which a plateau that scatters is one.
+const LEAST_STOP: f64 = 0.2;
 /// Shortest plateau [s].
 const SHORTEST_S: f64 = 0.008;
 
@@ -22,22 +31,30 @@ pub(crate) fn peak_rad(theta_rad: &[f64]) -> f64 {
     theta_rad.iter().copied().filter(|value| value.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()))
 }
 
-/// Where a pick-off stands still at its largest excursion.
+/// Where a pick-off stands still at its largest excursion, for a nominal stop.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-pub(crate) fn plateau(theta_rad: &[f64], period_s: f64) -> Option<Plateau> {
+pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option<Plateau> {
     let peak = peak_rad(theta_rad);
     let least = (SHORTEST_S / period_s) as usize;
+    let finite: Vec<bool> = theta_rad.iter().map(|value| value.is_finite()).collect();
+    let noise = rough(theta_rad, &finite);
+    let (band, least_scatter) = ((SHARE * peak).max(NOISES * noise), noise.max(least_count_rad(theta_rad)));
     let mut on_stop = vec![false; theta_rad.len()];
     let mut level = Vec::new();
     let mut start = 0_usize;
     for k in 0..=theta_rad.len() {
-        if k < theta_rad.len() && theta_rad[k].abs() > peak * (1.0 - SHARE) {
+        if k < theta_rad.len() && theta_rad[k].abs() > peak - band {
             continue;
         }
         // it comes in with a rate, and stands still at once
         let came = start.checked_sub(least).map_or(0.0, |before| peak - theta_rad[before].abs());
         let onward = came * 0.5 * (k - start) as f64 / least as f64;
-        if k - start > least && came > 10.0 * SHARE * peak && onward > ONWARD * SHARE * peak {
+        let steep = came > 10.0 * SHARE * peak && onward > ONWARD * SHARE * peak;
+        let flat = || {
+            let scatter = scatter_rad(&theta_rad[start..k]).max(least_scatter);
+            came > ENTERS * scatter && onward > FLAT * scatter
+        };
+        if k - start > least && (steep && peak > LEAST_STOP * stop_rad || flat()) {
             level.extend(theta_rad[start..k].iter().map(|value| value.abs()));
             on_stop[start..k].fill(true);
         }
@@ -45,4 +62,50 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64) -> Option<Plateau> {
     }
     level.sort_by(f64::total_cmp);
     level.get(level.len() / 2).map(|&level_rad| Plateau { level_rad, on_stop })
+}
+
+/// Smallest step between two samples.
+fn least_count_rad(theta_rad: &[f64]) -> f64 {
+    let steps = theta_rad.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min)
+}
+
+/// Scatter of most of the samples, as that of a normal distribution between its quartiles.
+fn scatter_rad(theta_rad: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = theta_rad.iter().map(|value| value.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    (sizes[3 * sizes.len() / 4] - sizes[sizes.len() / 4]) / 1.349
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plateau;
+
+    const STOP_RAD: f64 = 8.7e-3;
+
+    /// A swing of a fifth of a second, seen by a pick-off with a noise of 3e-7 rad, held at a level.
+    fn swung(peak_rad: f64, held_rad: f64) -> Vec<f64> {
+        let noise = |k: usize| (((k * 7919) % 1000) as f64 / 500.0 - 1.0) * 5e-7;
+        let angle = |k: usize| peak_rad * (std::f64::consts::PI * k as f64 * 1e-2).sin();
+        (0..6000).map(|k| angle(k).clamp(-held_rad, held_rad) + noise(k)).collect()
+    }
+
+    #[test]
+    fn closed_form_a_float_that_stands_still_is_on_a_stop_wherever_that_is() {
+        for held_rad in [6e-4, 3e-3, STOP_RAD] {
+            let own = plateau(&swung(1.4 * held_rad, held_rad), 1e-3, STOP_RAD).expect("a plateau");
+            assert!((own.level_rad / held_rad - 1.0).abs() < 1e-3, "{held_rad}: {}", own.level_rad);
+        }
+    }
+
+    #[test]
+    fn closed_form_a_peak_is_no_stop_nor_are_steps_of_a_converter() {
+        for peak_rad in [6e-4, 3e-3, STOP_RAD] {
+            assert_eq!(plateau(&swung(peak_rad, f64::MAX), 1e-3, STOP_RAD), None, "{peak_rad}");
+            let step_rad = 0.1 * peak_rad;
+            let read: Vec<f64> =
+                swung(peak_rad, f64::MAX).iter().map(|angle| step_rad * (angle / step_rad).round()).collect();
+            assert_eq!(plateau(&read, 1e-3, 50.0 * STOP_RAD), None, "{peak_rad} in steps");
+        }
+    }
 }

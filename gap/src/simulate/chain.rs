@@ -22,6 +22,8 @@ pub(crate) const SECTION: usize = 3;
 pub(crate) const INTEGRATOR: usize = 7;
 pub(crate) const TORQUE: usize = 8;
 pub(crate) const PHI: usize = 9;
+/// Those that are torques: sections as they show at the output, integrator, motor.
+pub(crate) const TORQUES: std::ops::RangeInclusive<usize> = SECTION..=TORQUE;
 /// States of the nominal chain.
 pub(crate) const PLAIN: usize = 10;
 /// States with delay and appendage.
