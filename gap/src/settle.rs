@@ -13,6 +13,8 @@ use crate::record::Record;
 const TOO_QUIET: f64 = 0.98;
 /// How sure it must be that noise of low frequency was taken too high: few lines that hide what is slow [nats].
 const TOO_HIGH: f64 = 8.0;
+/// What a fit near the noise leaves of it.
+const NEAR: f64 = 1.1;
 /// How often the noise is taken again.
 const AGAIN: usize = 2;
 
@@ -28,7 +30,7 @@ pub(crate) struct Settled<'a> {
 pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
     let mut on = Measured::new(Ground::new(record, model));
     loop {
-        let looked = look(&on.problem, on.nominal.clone());
+        let looked = look(&on.problem, on.nominal.clone(), on.carried.take());
         let best = if on.may_be_beaten_by(looked.closest()) {
             let best = looked.closest().clone();
             drop(looked);
@@ -52,6 +54,8 @@ struct Measured<'a> {
     known: Option<Known>,
     problem: Problem<'a>,
     nominal: Fit,
+    /// What left this noise, fitted under it.
+    carried: Option<Fit>,
     /// How often the noise may be taken again.
     more: usize,
     /// Square that the fit which left this noise leaves under it; endless where that is not known.
@@ -62,13 +66,21 @@ impl<'a> Measured<'a> {
     fn new(ground: Ground<'a>) -> Self {
         let problem = ground.problem(None);
         let nominal = null(&problem, None);
-        let mut on = Self { ground, known: None, problem, nominal, more: AGAIN, stands_at: f64::INFINITY };
-        if on.is_beaten_by(&on.nominal) {
-            let best = on.nominal.clone();
-            return on.again(&best);
+        let mut on =
+            Self { ground, known: None, problem, nominal, carried: None, more: AGAIN, stands_at: f64::INFINITY };
+        if !on.is_beaten_by(&on.nominal) {
+            rebase(&mut on.problem, &on.nominal);
+            return on;
         }
-        rebase(&mut on.problem, &on.nominal);
-        on
+        // near the noise, and at the end of their tolerance, the nominal parameters stand for an effect
+        let near = on.nominal.square < NEAR * on.problem.whitener.count() as f64;
+        let mut best = on.nominal.clone();
+        if near && best.is_strained(&on.problem) {
+            rebase(&mut on.problem, &best);
+            best = look(&on.problem, best, None).closest().clone();
+            best = ended(&mut on.problem, best);
+        }
+        on.again(&best)
     }
 
     /// Whether a fit leaves less than the noise.
@@ -93,7 +105,7 @@ impl<'a> Measured<'a> {
         let mut problem = ground.problem(known.clone());
         let nominal = null(&problem, Some(&nominal));
         rebase(&mut problem, &nominal);
-        Self { ground, known, problem, nominal, more, stands_at: f64::INFINITY }
+        Self { ground, known, problem, nominal, carried: None, more, stands_at: f64::INFINITY }
     }
 
     /// Once more, and again where the same effects stay below that noise too.
@@ -102,16 +114,17 @@ impl<'a> Measured<'a> {
         loop {
             on = on.again(&best);
             on.more -= 1;
+            on.carried = carried(&on.problem, &best);
             if on.more == 0 {
                 on.ground.forget();
                 return on;
             }
-            let Some(still) = carried(&on.problem, &best) else { return on };
-            if !on.is_beaten_by(&still) {
+            let Some(still) = &on.carried else { return on };
+            if !on.is_beaten_by(still) {
                 on.stands_at = still.square;
                 return on;
             }
-            best = still;
+            best = still.clone();
         }
     }
 }

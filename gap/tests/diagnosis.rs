@@ -18,6 +18,19 @@ fn log_with(excitation: Excitation, effects: &[(&'static str, Vec<f64>)]) -> Log
     as_log(&simulate(&case))
 }
 
+/// Columns that no diagnosis can do without, in another order than a bench has them.
+const LEAST: [Column; 6] =
+    [Column::GyroAngle, Column::VehicleRate, Column::AccelZ, Column::AccelY, Column::AccelX, Column::Time];
+
+fn of_columns(log: &Log, columns: &[Column]) -> Log {
+    let mut own = Log::default();
+    own.time.period_s = 1e-3;
+    for &column in columns {
+        own.set(column, log.column(column).expect("a column").to_vec());
+    }
+    own
+}
+
 fn typical(name: &'static str) -> (&'static str, Vec<f64>) {
     (name, Effect::from_name(name).expect("an effect of the table").typical())
 }
@@ -132,19 +145,7 @@ fn time_origin_and_columns_that_are_not_needed_change_nothing() {
     let mut moved = log.clone();
     let later: Vec<f64> = log.column(Column::Time).expect("time").iter().map(|time| time + 1234.5).collect();
     moved.set(Column::Time, later);
-    let mut without = Log::default();
-    without.time.period_s = 1e-3;
-    for column in [
-        Column::MotorTorque,
-        Column::GyroAngle,
-        Column::VehicleRate,
-        Column::AccelZ,
-        Column::AccelY,
-        Column::AccelX,
-        Column::Time,
-    ] {
-        without.set(column, log.column(column).expect("a column").to_vec());
-    }
+    let without = of_columns(&log, &[&[Column::MotorTorque], &LEAST[..]].concat());
     let [own, moved, without] = [log, moved, without].map(|log| names(&diagnose(&log, &ModelFile::default())));
     assert!(own.contains(&"cable_spring"));
     assert_eq!(own, moved);
@@ -185,4 +186,28 @@ fn what_follows_a_shove_onto_the_stop_is_diagnosed_by_itself() {
     let diagnosis = diagnose(&log, &ModelFile::default());
     assert_eq!(names(&diagnosis), ["cable_spring"], "{:#}", report(&diagnosis)["notes"]);
     assert!(diagnosis.record.first_s > 4.0 && diagnosis.record.first_s < 5.0, "{}", diagnosis.record.first_s);
+}
+
+#[test]
+fn a_ceiling_of_the_torque_is_found_without_a_sensor_that_shows_it() {
+    let nominal = log_with(Excitation::Manoeuvre, &[]);
+    let torque_nm = nominal.column(Column::MotorTorque).expect("the motor torque");
+    let limit_nm = 0.7 * torque_nm.iter().fold(0.0, |peak: f64, own| peak.max(own.abs()));
+    let log = of_columns(&log_with(Excitation::Manoeuvre, &[("torque_saturation", vec![limit_nm])]), &LEAST);
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(names(&diagnosis), ["torque_saturation"]);
+    let found = &diagnosis.decision.as_ref().expect("a decision").found[0];
+    let (value, error) = (found.values[0], found.errors[0]);
+    assert!((value - limit_nm).abs() < 3.0 * error && error < 0.03 * limit_nm, "{value} +- {error}, {limit_nm}");
+}
+
+#[test]
+fn a_stop_is_found_wherever_the_float_stands_on_it() {
+    for change in [-0.7, -0.93] {
+        let log = log_with(Excitation::Manoeuvre, &[("stop_angle", vec![change])]);
+        let diagnosis = diagnose(&log, &ModelFile::default());
+        assert_eq!(names(&diagnosis), ["stop_angle"], "{change}: {:#}", report(&diagnosis)["notes"]);
+        let found = &diagnosis.decision.as_ref().expect("a decision").found[0];
+        assert!((found.values[0] - change).abs() < 3.0 * found.errors[0], "{change}: {:?}", found.values);
+    }
 }

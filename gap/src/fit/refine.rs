@@ -66,6 +66,11 @@ impl Fit {
         is_idle(self.effects[place], &self.values[place], &self.errors[place])
     }
 
+    /// Whether it has a nominal parameter beyond its tolerance.
+    pub(crate) fn is_strained(&self, problem: &Problem) -> bool {
+        self.shifts.iter().zip(&problem.nuisances).any(|(shift, own)| shift.abs() > own.tolerance)
+    }
+
     /// Where the fit stands.
     pub(crate) fn point(&self, problem: &Problem) -> Point {
         let state = self.begin.state.iter().zip(&problem.begin.state).take(problem.columns.begin).map(|(a, b)| a - b);

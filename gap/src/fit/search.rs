@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::ceiling::saturated;
 use super::formulations::extend;
 use super::gross::gross;
 use super::heavy::heavy;
@@ -9,9 +10,7 @@ use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::refine::Effort;
 use super::refit::rebase;
-use super::signals::peak;
 use super::{Fit, Problem, refine};
-use crate::library::PROMISE;
 
 /// A set of candidates, by index.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -56,14 +55,12 @@ const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
 /// Most effects of a set.
 const MOST: usize = 3;
-/// A predicted torque that comes so near the highest that was measured, over it, may have met a ceiling.
-const NEAR: f64 = 0.98;
 
 /// Looks through the library, from the fit of the nominal parameters alone.
 #[must_use]
 pub fn search(problem: &mut Problem, null: Fit) -> Search {
     rebase(problem, &null);
-    look(problem, null).finished(problem)
+    look(problem, null, None).finished(problem)
 }
 
 /// Sets of effects that were fitted far enough to be compared.
@@ -74,9 +71,9 @@ pub(crate) struct Looked {
     glimpses: Vec<Glimpse>,
 }
 
-/// The first half of a search, by the sensitivities at the fit of the nominal parameters.
-pub(crate) fn look(problem: &Problem, null: Fit) -> Looked {
-    let (fits, glimpses) = sets(problem, &null);
+/// The first half of a search, by the sensitivities at the fit of the nominal parameters, with a fit that is known already.
+pub(crate) fn look(problem: &Problem, null: Fit, known: Option<Fit>) -> Looked {
+    let (fits, glimpses) = sets(problem, &null, known);
     Looked { null, fits, glimpses }
 }
 
@@ -128,8 +125,8 @@ pub fn null(problem: &Problem, from: Option<&Fit>) -> Fit {
 }
 
 /// Singles, and pairs and triples from the best of them, the best first; and what singles were chosen from.
-fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
-    let mut fits = Vec::new();
+fn sets(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<Glimpse>) {
+    let mut fits: Vec<Fit> = known.into_iter().filter(|fit| !fit.set.0.is_empty()).collect();
     let first = best_by_effect(problem, extensions(problem, null), usize::MAX);
     let glimpses = seen(&first);
     fits.extend(saturated(problem, null));
@@ -154,6 +151,7 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
                     .filter(|extension| promising(problem, extension))
                     .filter_map(|extension| extend(problem, seed, &extension))
             })
+            .chain(seeds.par_iter().filter_map(|seed| saturated(problem, seed)))
             .collect();
         for fit in wider {
             if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
@@ -163,14 +161,6 @@ fn sets(problem: &Problem, null: &Fit) -> (Vec<Fit>, Vec<Glimpse>) {
         sort(problem, null, &mut fits);
     }
     (fits, glimpses)
-}
-
-/// A ceiling of the torque changes everything where it is reached: equations that are linear below it do not lead there.
-fn saturated(problem: &Problem, null: &Fit) -> Option<Fit> {
-    let ceiling_nm = problem.ceiling_nm.filter(|ceiling| peak(&null.prediction.motor_torque_nm) > NEAR * ceiling)?;
-    let index = problem.candidates.iter().position(|candidate| candidate.effect == "torque_saturation")?;
-    let fit = refine(problem, &Set(vec![index]), &[vec![ceiling_nm]], Some(null), Effort::Quick);
-    Some(fit).filter(|fit| fit.square < null.square - PROMISE)
 }
 
 /// The best fit may have found a way down that the nominal parameters missed: they start there once more. And whether

@@ -10,8 +10,10 @@ use super::strange::{Stranger, strangers};
 use super::weigh::{Weighed, best, holds, weigh};
 use crate::fit::{Fit, Problem, Search};
 
-/// Probability of a cause that nothing shows, without and with an effect that explains the log.
-pub(crate) const UNSEEN: [f64; 2] = [0.1, 0.04];
+/// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be
+/// that none of the library's is it, from logs with open answers.
+pub(crate) const UNSEEN: f64 = 0.1;
+const SUREST: f64 = 0.92;
 /// Unknown is the verdict from here on, without and with an effect.
 pub(crate) const UNEXPLAINED: [f64; 2] = [0.5, 0.6];
 /// Share of the likeliest set's probability from which on another is not told apart from it.
@@ -241,8 +243,7 @@ fn name(problem: &Problem, fit: &Fit, set: &Weighed, decision: &mut Decision) {
 pub(crate) fn unknown(stands_out: f64, share: f64, limit: f64, scale: f64, found: bool) -> f64 {
     let stands_out = 1.0 / (1.0 + (-(stands_out - limit) / scale).exp());
     let share = if found { share } else { 1.0 };
-    (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES))
-        .clamp(UNSEEN[usize::from(found)], 0.98)
+    (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES)).clamp(UNSEEN, SUREST)
 }
 
 /// What the samples show by themselves: a stop elsewhere, as the pick-off reads it, and a grid of angles.

@@ -83,7 +83,7 @@ pub(super) fn remains(materials: &[Material], null: &Fitted, fitted: &Fitted, ex
     let strange = most.map_or(0.0, |(_, nats)| nats);
     let of_all = of_strange(strange, limit, scale);
     Remains {
-        unknown: each.iter().map(of_log).fold(UNSEEN[usize::from(found)].max(of_all), f64::max),
+        unknown: each.iter().map(of_log).fold(UNSEEN.max(of_all), f64::max),
         tells: each.iter().any(Left::tells) || strange > limit + scale,
         goes_with: most.filter(|(_, nats)| *nats > limit),
     }
