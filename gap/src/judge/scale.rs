@@ -1,57 +1,98 @@
-//! The common scale of all torques: nothing in a log tells it from the units of the torque sensor.
+//! Scales that nothing in a log tells: that of all torques, and that of the float's angle.
 //!
 //! ```text
-//! every torque, inertia and gain times (1 + e), the torque sensor's scale over (1 + e): the same log
+//! every torque, inertia and gain times (1 + e), the torque sensor's scale over (1 + e)                     the same log
+//! theta over (1 + e), H, gain and the pick-off's scale times (1 + e), Jo and Bo times (1 + e)^2            the same log
 //! ```
 //!
 //! Sensitivities are differences over steps, and what a ceiling or a stop bends is no line over a step. Where such columns
-//! are large, they seem to tell the scale, though nothing does; so what they say along it is taken out.
+//! are large, they seem to tell the scales, though nothing does; so what they say along them is taken out.
 
-use gimbal_plant::Effect;
+use gimbal_plant::{Block, Effect};
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::{Fit, Hypothesis, Problem};
 use crate::record::Signal;
-use crate::simulate::TORQUES;
+use crate::simulate::{ANGLES, TORQUES};
 
-/// The step along it of all that is fitted, relative.
-pub(super) fn common_scale(problem: &Problem, hypothesis: &Hypothesis, fit: &Fit) -> DVector<f64> {
-    let mut along = vec![0.0; problem.columns.begin];
-    for (place, own) in along.iter_mut().enumerate().filter(|(place, _)| TORQUES.contains(place)) {
-        *own = fit.begin.state[place];
-    }
+/// A scale: what all that is fitted changes by along it, relative.
+struct Scale {
+    state: fn(usize) -> f64,
+    nominal: fn(&str) -> f64,
+    torque: fn(Block) -> f64,
+}
+
+const SCALES: [Scale; 2] = [
+    Scale {
+        state: |place| if TORQUES.contains(&place) { 1.0 } else { 0.0 },
+        nominal: |name| match name {
+            "friction_level" | "bearing viscosity" | "unbalance x" | "unbalance y" | "loop_gain" | "gyro_damping"
+            | "angular_momentum" | "gimbal_inertia" | "float inertia" => 1.0,
+            "torque_scale" => -1.0,
+            _ => 0.0,
+        },
+        torque: |_| 1.0,
+    },
+    Scale {
+        state: |place| if ANGLES.contains(&place) { -1.0 } else { 0.0 },
+        nominal: |name| match name {
+            "angular_momentum" | "loop_gain" | "pickoff_scale" => 1.0,
+            "gyro_damping" | "float inertia" => 2.0,
+            _ => 0.0,
+        },
+        torque: |block| if block == Block::Gyro { 1.0 } else { 0.0 },
+    },
+];
+
+/// Normal equations that say nothing along the scales; what they say elsewhere stays, as priors of these weights divide the
+/// one from the other.
+pub(super) fn silent(
+    gram: DMatrix<f64>,
+    weights: &[f64],
+    problem: &Problem,
+    hypothesis: &Hypothesis,
+    fit: &Fit,
+) -> DMatrix<f64> {
+    let [torques, angles] = SCALES.map(|scale| along(&scale, problem, hypothesis, fit));
+    let weighed =
+        |own: &DVector<f64>| own.iter().zip(weights).zip(&torques).map(|((a, weight), b)| a * weight * b).sum::<f64>();
+    let angles = &angles - &torques * (weighed(&angles) / weighed(&torques));
+    [torques, angles].iter().fold(gram, |gram, along| silent_along(&gram, along, weights))
+}
+
+/// The step along a scale of all that is fitted.
+fn along(scale: &Scale, problem: &Problem, hypothesis: &Hypothesis, fit: &Fit) -> DVector<f64> {
+    let mut along: Vec<f64> =
+        (0..problem.columns.begin).map(|place| (scale.state)(place) * fit.begin.state[place]).collect();
     let sensor = problem.record.channel(Signal::MotorTorque).is_some();
-    along.extend(problem.nuisances.iter().map(|own| match own.name {
-        "unbalance x" => problem.base.config.unbalance.x_kg_m,
-        "unbalance y" => problem.base.config.unbalance.y_kg_m,
-        "torque_scale" if sensor => -1.0,
-        "friction_level" | "bearing viscosity" | "loop_gain" | "gyro_damping" | "angular_momentum"
-        | "gimbal_inertia" | "float inertia" => 1.0,
-        _ => 0.0,
+    let unbalance = &problem.base.config.unbalance;
+    along.extend(problem.nuisances.iter().map(|own| {
+        (scale.nominal)(own.name)
+            * match own.name {
+                "unbalance x" => unbalance.x_kg_m,
+                "unbalance y" => unbalance.y_kg_m,
+                "torque_scale" if !sensor => 0.0,
+                _ => 1.0,
+            }
     }));
     along.extend(hypothesis.free.iter().map(|free| {
         let effect = fit.effects[free.effect];
-        let unit = Effect::from_name(effect).map_or("", |entry| entry.parameters()[free.value].unit);
-        // what the sensor adds is not the platform's
-        let is_torque = unit.starts_with("N m") && effect != "torque_bias";
-        if !is_torque {
-            0.0
-        } else if free.log {
-            1.0
-        } else {
-            fit.values[free.effect][free.value]
-        }
+        let Some(entry) = Effect::from_name(effect) else { return 0.0 };
+        let unit = entry.parameters()[free.value].unit;
+        // what a sensor adds is not the platform's
+        let is_torque = entry.block() != Block::Measurement && (unit.starts_with("N m") || unit.starts_with("kg m"));
+        let own = if free.log { 1.0 } else { fit.values[free.effect][free.value] };
+        if is_torque { (scale.torque)(entry.block()) * own } else { 0.0 }
     }));
     DVector::from_vec(along)
 }
 
-/// Normal equations that say nothing along a direction; what they say elsewhere stays, as priors of these weights divide
-/// the one from the other.
+/// The same along one direction.
 ///
 /// ```text
 /// Q' G Q        Q = 1 - v w' / (w' v), w = P v
 /// ```
-pub(super) fn silent_along(gram: &DMatrix<f64>, along: &DVector<f64>, weights: &[f64]) -> DMatrix<f64> {
+fn silent_along(gram: &DMatrix<f64>, along: &DVector<f64>, weights: &[f64]) -> DMatrix<f64> {
     let across = DVector::from_iterator(along.len(), along.iter().zip(weights).map(|(own, weight)| own * weight));
     let norm = across.dot(along);
     let seen = gram * along;

@@ -5,13 +5,13 @@
 //! ```
 //!
 //! A fit leads a nominal parameter to the end of its tolerance and holds it there; it is not known any better for that, so
-//! the walls that held it are no part of P. J says nothing along the common scale of all torques.
+//! the walls that held it are no part of P. J says nothing along scales that no log tells.
 
 use gimbal_plant::Effect;
 use nalgebra::DMatrix;
 
 use super::decide::Found;
-use super::scale::{common_scale, silent_along};
+use super::scale::silent;
 use crate::fit::{Fit, Hypothesis, Linear, Problem, solve, standard_errors};
 
 /// How far apart the values lie that other formulations of an effect mean by the same parameter, relative: with which power
@@ -71,7 +71,7 @@ impl Spread {
         }
         let (mut gram, mut drive) = Linear::of(problem).joined(&fit.sensitivities, &fit.residual);
         let temper = (fit.square / problem.whitener.count() as f64).max(1.0);
-        gram = silent_along(&(gram / temper), &common_scale(problem, &hypothesis, fit), &weights);
+        gram = silent(gram / temper, &weights, problem, &hypothesis, fit);
         drive /= temper;
         let chosen: Vec<usize> = (0..drive.len()).collect();
         let covariance = solve(&gram, &drive, &chosen, &weights)?.covariance;

@@ -2,6 +2,7 @@
 
 mod channel;
 mod faults;
+mod part;
 mod plateau;
 mod quiet;
 mod rough;
@@ -10,11 +11,12 @@ mod stuck;
 use std::ops::Range;
 
 use gimbal_log::{Column, Log};
-use gimbal_servo::{Config, bearing};
+use gimbal_servo::Config;
 
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
 pub use faults::{Data, faults};
+pub(crate) use part::BEGINNING_S;
 pub(crate) use plateau::{peak_rad, plateau};
 pub use quiet::RateNoise;
 pub(crate) use quiet::between;
@@ -140,46 +142,6 @@ impl Record {
     /// Whether the float touches a stop, or may have.
     pub(crate) fn comes_near_a_stop(&self) -> bool {
         self.away_from_stop.is_some()
-    }
-
-    /// The longest run of rows away from the stop as a log of its own, if it is long enough; none where the stop was not
-    /// reached.
-    pub(crate) fn away_from_stop(&self, bearing: &bearing::Config) -> Option<Self> {
-        let rows = self.away_from_stop.clone()?;
-        let period_s = self.inputs.period_s;
-        let [from_s, to_s] = [rows.start, rows.end].map(|row| row as f64 * period_s);
-        if to_s - from_s < SHORTEST_S {
-            return None;
-        }
-        let cut = |values: &[f64]| values.get(rows.clone()).map(<[f64]>::to_vec).unwrap_or_default();
-        let mut inputs = Inputs {
-            period_s,
-            start_s: self.inputs.start_s + from_s,
-            accel_mps2: self.inputs.accel_mps2.each_ref().map(|axis| cut(axis)),
-            rate_radps: cut(&self.inputs.rate_radps),
-            cross_radps: cut(&self.inputs.cross_radps),
-            ..Inputs::default()
-        };
-        inputs.complete(bearing, self.inputs.turned_rad[rows.start]);
-        let channel = |channel: &Channel| Channel {
-            signal: channel.signal,
-            values: cut(&channel.values),
-            valid: channel.valid[rows.clone()].to_vec(),
-        };
-        let mut notes = self.notes.clone();
-        notes.push(format!(
-            "no prediction goes through the stop: {from_s:.1} s to {to_s:.1} s after the first row, away from it, are taken by themselves"
-        ));
-        Some(Self {
-            first_s: self.first_s + from_s,
-            inputs,
-            channels: self.channels.iter().map(channel).collect(),
-            plateau_rad: self.plateau_rad,
-            away_from_stop: None,
-            rate_noise: self.rate_noise.clone(),
-            faults: Vec::new(),
-            notes,
-        })
     }
 
     fn look_at_excitation(&mut self, length_s: f64) {

@@ -24,6 +24,8 @@ pub(crate) const TORQUE: usize = 8;
 pub(crate) const PHI: usize = 9;
 /// Those that are torques: sections as they show at the output, integrator, motor.
 pub(crate) const TORQUES: std::ops::RangeInclusive<usize> = SECTION..=TORQUE;
+/// The float's.
+pub(crate) const ANGLES: std::ops::RangeInclusive<usize> = THETA..=THETA_RATE;
 /// States of the nominal chain.
 pub(crate) const PLAIN: usize = 10;
 /// States with delay and appendage.

@@ -18,7 +18,7 @@ mod predict;
 mod running;
 mod sprung;
 
-pub(crate) use chain::TORQUES;
+pub(crate) use chain::{ANGLES, TORQUES};
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
 pub use physics::{BuildUp, Friction, Hysteresis, Loop, Measurement, Physics, Ripple};

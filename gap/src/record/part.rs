@@ -1,0 +1,61 @@
+//! A part of a record as one of its own.
+
+use std::ops::Range;
+
+use gimbal_servo::bearing;
+
+use super::{Channel, Record, SHORTEST_S};
+use crate::simulate::Inputs;
+
+/// How long a wrong beginning may last [s].
+pub(crate) const BEGINNING_S: f64 = 1.0;
+
+impl Record {
+    /// The longest run of rows away from the stop; none where the stop was not reached, or the run is too short.
+    pub(crate) fn away_from_stop(&self, bearing: &bearing::Config) -> Option<Self> {
+        self.part(self.away_from_stop.clone()?, bearing, "no prediction goes through the stop", "away from it")
+    }
+
+    /// What follows its first second; none where that is too short.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    pub(crate) fn after_its_beginning(&self, bearing: &bearing::Config) -> Option<Self> {
+        let from = (BEGINNING_S / self.inputs.period_s) as usize;
+        self.part(from..self.rows(), bearing, "no prediction gets away from the beginning", "past it")
+    }
+
+    fn part(&self, rows: Range<usize>, bearing: &bearing::Config, why: &str, which: &str) -> Option<Self> {
+        let period_s = self.inputs.period_s;
+        let [from_s, to_s] = [rows.start, rows.end].map(|row| row as f64 * period_s);
+        if to_s - from_s < SHORTEST_S {
+            return None;
+        }
+        let cut = |values: &[f64]| values.get(rows.clone()).map(<[f64]>::to_vec).unwrap_or_default();
+        let mut inputs = Inputs {
+            period_s,
+            start_s: self.inputs.start_s + from_s,
+            accel_mps2: self.inputs.accel_mps2.each_ref().map(|axis| cut(axis)),
+            rate_radps: cut(&self.inputs.rate_radps),
+            cross_radps: cut(&self.inputs.cross_radps),
+            ..Inputs::default()
+        };
+        inputs.complete(bearing, self.inputs.turned_rad[rows.start]);
+        let channel = |channel: &Channel| Channel {
+            signal: channel.signal,
+            values: cut(&channel.values),
+            valid: channel.valid[rows.clone()].to_vec(),
+        };
+        let mut notes = self.notes.clone();
+        notes
+            .push(format!("{why}: {from_s:.1} s to {to_s:.1} s after the first row, {which}, are taken by themselves"));
+        Some(Self {
+            first_s: self.first_s + from_s,
+            inputs,
+            channels: self.channels.iter().map(channel).collect(),
+            plateau_rad: self.plateau_rad,
+            away_from_stop: None,
+            rate_noise: self.rate_noise.clone(),
+            faults: Vec::new(),
+            notes,
+        })
+    }
+}
