@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::fit::{Fit, Hypothesis, Problem};
 use crate::record::Signal;
-use crate::simulate::{ANGLES, TORQUES};
+use crate::simulate::{ANGLES, Physics, TORQUES};
 
 /// A scale: what all that is fitted changes by along it, relative.
 struct Scale {
@@ -65,15 +65,9 @@ fn along(scale: &Scale, problem: &Problem, hypothesis: &Hypothesis, fit: &Fit) -
     let mut along: Vec<f64> =
         (0..problem.columns.begin).map(|place| (scale.state)(place) * fit.begin.state[place]).collect();
     let sensor = problem.record.channel(Signal::MotorTorque).is_some();
-    let unbalance = &problem.base.config.unbalance;
-    along.extend(problem.nuisances.iter().map(|own| {
-        (scale.nominal)(own.name)
-            * match own.name {
-                "unbalance x" => unbalance.x_kg_m,
-                "unbalance y" => unbalance.y_kg_m,
-                "torque_scale" if !sensor => 0.0,
-                _ => 1.0,
-            }
+    along.extend(problem.nuisances.iter().map(|own| match own.name {
+        "torque_scale" if !sensor => 0.0,
+        name => (scale.nominal)(name) * unit(name, &problem.base),
     }));
     along.extend(hypothesis.free.iter().map(|free| {
         let effect = fit.effects[free.effect];
@@ -85,6 +79,15 @@ fn along(scale: &Scale, problem: &Problem, hypothesis: &Hypothesis, fit: &Fit) -
         if is_torque { (scale.torque)(entry.block()) * own } else { 0.0 }
     }));
     DVector::from_vec(along)
+}
+
+/// What a relative change of one is, in the units of the shift of a nominal parameter.
+fn unit(name: &str, base: &Physics) -> f64 {
+    match name {
+        "unbalance x" => base.config.unbalance.x_kg_m,
+        "unbalance y" => base.config.unbalance.y_kg_m,
+        _ => 1.0,
+    }
 }
 
 /// The same along one direction.
@@ -102,9 +105,12 @@ fn silent_along(gram: &DMatrix<f64>, along: &DVector<f64>, weights: &[f64]) -> D
 
 #[cfg(test)]
 mod tests {
+    use gimbal_model_file::ModelFile;
     use nalgebra::{DMatrix, DVector};
 
-    use super::silent_along;
+    use super::{SCALES, silent_along, unit};
+    use crate::library::{nuisances, platform};
+    use crate::simulate::{Begin, Inputs, predict};
 
     #[test]
     fn closed_form_what_is_said_along_a_direction_is_taken_out_and_nothing_else() {
@@ -118,5 +124,44 @@ mod tests {
         assert!((&silent * &across - &gram * &across).dot(&across).abs() < 1e-12);
         // and equations that said nothing along it stay as they were
         assert!((silent_along(&silent, &along, &weights) - &silent).norm() < 1e-12);
+    }
+    #[test]
+    fn closed_form_along_a_scale_the_sensors_show_the_same() {
+        let wave = |size: f64, hz: f64| -> Vec<f64> {
+            (0..4000).map(|k| size * (std::f64::consts::TAU * hz * f64::from(k) * 1e-3).sin()).collect()
+        };
+        let mut inputs = Inputs {
+            period_s: 1e-3,
+            accel_mps2: [wave(3.0, 0.7), wave(5.0, 1.1), wave(9.0, 0.4)],
+            rate_radps: wave(0.3, 2.3),
+            ..Inputs::default()
+        };
+        let model = ModelFile::default();
+        inputs.complete(&model.config.bearing, 0.0);
+        let mut base = platform(&model);
+        base.float_nm = 1e-6;
+        let begin = Begin::at(&base, &inputs, 1e-4, None);
+        let nominal = predict(&base, &inputs, &begin, usize::MAX);
+        let by: f64 = 0.1;
+        for scale in SCALES {
+            let (mut physics, mut from) = (base.clone(), begin.clone());
+            for own in nuisances(&model.tolerance, &base) {
+                own.shift(&mut physics, by * (scale.nominal)(own.name) * unit(own.name, &base));
+            }
+            physics.float_nm *= (by * (scale.torque)(gimbal_plant::Block::Gyro)).exp();
+            for (place, state) in from.state.iter_mut().enumerate() {
+                *state *= (by * (scale.state)(place)).exp();
+            }
+            let scaled = predict(&physics, &inputs, &from, usize::MAX);
+            for (a, b) in [
+                (&nominal.gyro_angle_rad, &scaled.gyro_angle_rad),
+                (&nominal.motor_torque_nm, &scaled.motor_torque_nm),
+                (&nominal.gimbal_angle_rad, &scaled.gimbal_angle_rad),
+            ] {
+                let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                let size = a.iter().map(|a| a.abs()).fold(0.0, f64::max);
+                assert!(apart < 1e-6 * size, "{apart:e} of {size:e}");
+            }
+        }
     }
 }
