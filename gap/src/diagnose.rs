@@ -16,8 +16,6 @@ use crate::settle::{Settled, settled};
 /// No fit that leaves more than this of the noise comes near a log.
 const ASTRAY: f64 = 1.5;
 
-/// Share of the noise that the closest fit leaves beyond it from where on it may have begun wrong.
-const BEGINS_WRONG: f64 = 0.02;
 /// A residual this many times the white noise of every sensor is no noise, however slow.
 const NO_NOISE: f64 = 25.0;
 /// The same where the effects named take nothing away.
@@ -116,7 +114,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let part = if read.comes_near_a_stop() {
         astray(&whole).then(|| read.away_from_stop(bearing)).flatten()
     } else {
-        begins_wrong(&whole).then(|| read.after_its_beginning(bearing)).flatten()
+        (astray(&whole) && begins_wrong(&whole)).then(|| read.after_its_beginning(bearing)).flatten()
     };
     let Settled { mut problem, mut search, known } = match &part {
         Some(part) => {
@@ -231,14 +229,14 @@ fn astray(Settled { problem, search, .. }: &Settled) -> bool {
     search.closest().square > ASTRAY * problem.whitener.count() as f64
 }
 
-/// Whether what its closest fit leaves beyond the noise is worth a look, and most of it is left at the beginning.
+/// Whether most of what its closest fit leaves beyond the noise is left at its beginning.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
 fn begins_wrong(Settled { problem, search, .. }: &Settled) -> bool {
-    let (closest, count) = (search.closest(), problem.whitener.count() as f64);
+    let closest = search.closest();
     let values = (BEGINNING_S / problem.record.inputs.period_s) as usize * problem.record.channels.len();
     let first: f64 = closest.residual.iter().take(values).map(|value| value * value).sum();
-    let excess = closest.square - count;
-    excess > BEGINS_WRONG * count && first - values as f64 > 0.5 * excess
+    let excess = closest.square - problem.whitener.count() as f64;
+    first - values as f64 > 0.5 * excess
 }
 
 /// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.
