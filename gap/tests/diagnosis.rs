@@ -211,3 +211,14 @@ fn a_stop_is_found_wherever_the_float_stands_on_it() {
         assert!((found.values[0] - change).abs() < 3.0 * found.errors[0], "{change}: {:?}", found.values);
     }
 }
+
+#[test]
+fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
+    let mut model = ModelFile::default();
+    let torque_nm = 1e-4 * model.config.gyro.angular_momentum_nm_s;
+    let log = log_with(Excitation::RateTable, &[("float_torque", vec![torque_nm])]);
+    assert_eq!(names(&diagnose(&log, &model)), ["float_torque"]);
+    model.tolerance.vehicle_rate_bias_radps = 2e-4;
+    let within = diagnose(&log, &model);
+    assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
+}

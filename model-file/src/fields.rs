@@ -1,7 +1,7 @@
 //! Every field of a model file: table, key, meaning, unit. A test holds it against the structs.
 
 /// Table, key, symbol and meaning with the unit in brackets.
-pub(crate) const FIELDS: [(&str, &str, &str); 42] = [
+pub(crate) const FIELDS: [(&str, &str, &str); 43] = [
     ("servo", "gimbal_inertia_kg_m2", "Jg, inertia of the stable member about the gimbal axis [kg m2]"),
     ("servo", "gain_nm_per_rad_s", "K, gain of F(s), which has an integrator [N m/(rad s)]"),
     ("servo", "lead_time_constants_s", "T1 to T5, zeros of F(s) [s]"),
@@ -44,6 +44,7 @@ pub(crate) const FIELDS: [(&str, &str, &str); 42] = [
     ("tolerance", "gimbal_inertia", "relative, Jg"),
     ("tolerance", "pickoff_scale", "relative, of the logged gyro angle"),
     ("tolerance", "torque_scale", "relative, of the logged motor torque"),
+    ("tolerance", "vehicle_rate_bias_radps", "bias of the logged vehicle rate [rad/s]"),
 ];
 
 /// The known name that is nearest.

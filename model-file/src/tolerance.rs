@@ -3,7 +3,8 @@
 use gimbal_servo::estimator;
 use serde::{Deserialize, Serialize};
 
-/// Relative standard uncertainty of each nominal parameter, by the name of the effect that shifts it.
+/// Relative standard uncertainty of each nominal parameter, by the name of the effect that shifts it, and the bias that the
+/// logged rate may have.
 ///
 /// A shift inside it is a nuisance; a shift beyond it is the effect of that name. The alignment of the accelerometers is
 /// not in the table: the diagnosis takes it to be known to 1e-3 rad about each axis.
@@ -35,10 +36,12 @@ pub struct Tolerance {
     pub pickoff_scale: f64,
     /// Scale of the torque measurement.
     pub torque_scale: f64,
+    /// Bias of the logged vehicle rate, absolute [rad/s]; 0 is none.
+    pub vehicle_rate_bias_radps: f64,
 }
 
 impl Tolerance {
-    /// Everything known to `default_relative`, load friction to 15 %.
+    /// Everything known to `default_relative`, load friction to 15 %, a logged rate without bias.
     #[must_use]
     pub fn with_default(default_relative: f64) -> Self {
         Self {
@@ -54,12 +57,13 @@ impl Tolerance {
             gimbal_inertia: default_relative,
             pickoff_scale: default_relative,
             torque_scale: default_relative,
+            vehicle_rate_bias_radps: 0.0,
         }
     }
 
-    /// Names and values; the names are effect names.
+    /// Names and values; the names are effect names but for the last.
     #[must_use]
-    pub fn entries(&self) -> [(&'static str, f64); 12] {
+    pub fn entries(&self) -> [(&'static str, f64); 13] {
         [
             ("default_relative", self.default_relative),
             ("friction_level", self.friction_level),
@@ -73,6 +77,7 @@ impl Tolerance {
             ("gimbal_inertia", self.gimbal_inertia),
             ("pickoff_scale", self.pickoff_scale),
             ("torque_scale", self.torque_scale),
+            ("vehicle_rate_bias_radps", self.vehicle_rate_bias_radps),
         ]
     }
 

@@ -11,7 +11,7 @@ use super::pull::Pull;
 use super::signals::{Kept, Signals, of_channel, scaled};
 use super::{Fit, Whitener};
 use crate::library::{Candidate, Nuisance};
-use crate::record::{Record, rough};
+use crate::record::{Record, rough, tails};
 use crate::simulate::{Begin, Physics};
 
 /// Time blocks.
@@ -21,6 +21,8 @@ pub const BLOCKS: usize = 10;
 const FORMULATION: f64 = 0.012;
 const NOISE_KNOWN: f64 = 1.005;
 const BY_CHANCE: f64 = 3.0;
+/// Power of noise over that of its middle from which on it has tails.
+const TAILS: f64 = 1.1;
 /// Share of the gap that a formulation may leave.
 const MAY_LEAVE: f64 = 0.02;
 
@@ -113,7 +115,9 @@ impl<'a> Problem<'a> {
         let channels = self.record.channels.len();
         let of = |channel: usize| -> f64 {
             let series: Vec<f64> = of_channel(whitened, channel, channels).collect();
-            rough(&series, &self.whitener.valid).powi(2)
+            let valid = &self.whitener.valid;
+            let (middle, all) = (rough(&series, valid).powi(2), tails(&series, valid));
+            if all > TAILS * middle { all } else { middle }
         };
         (0..channels).map(of).sum::<f64>() / channels as f64
     }

@@ -217,7 +217,8 @@ fn like_a_bias(problem: &Problem, found: &[Found]) -> Option<String> {
     let own = found.iter().find(|found| found.effect == "float_torque")?;
     let rate_radps = own.values[0] / problem.base.config.gyro.angular_momentum_nm_s;
     Some(format!(
-        "a bias of the logged rate of {rate_radps:.1e} rad/s would look like this float_torque: check the rate at rest"
+        "a bias of the logged rate of {rate_radps:.1e} rad/s would look like this float_torque: check the rate at rest, or say in [tolerance] \
+         how well it is known (`vehicle_rate_bias_radps`)"
     ))
 }
 

@@ -10,8 +10,10 @@ const FEW: f64 = 8.5;
 const WHOLE: f64 = 0.95;
 /// What is less than this share of the noise is how numbers are written.
 const WRITTEN: f64 = 1e-4;
-/// Standard deviations of the noise's power that a step adds to it, to be told.
+/// Standard deviations of the noise's power that a step adds to it, to be told; and its least size over the noise: what is
+/// no larger is the least count of a log, as every log has one.
 const SHOWN: f64 = 6.0;
+const LEAST_COUNT: f64 = 1.3;
 /// Fewest gaps.
 const LEAST: usize = 20;
 
@@ -33,7 +35,8 @@ pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<
     let whole = gaps.iter().filter(|gap| (**gap / first - (**gap / first).round()).abs() < OFF).count() as f64;
     let steps: f64 = gaps.iter().map(|gap| (gap / first).round()).sum();
     let step_rad = gaps.iter().sum::<f64>() / steps;
-    let shown = (rows / 2.0).sqrt() * (step_rad / noise_rad).powi(2) / 12.0 > SHOWN;
+    let over = step_rad / noise_rad;
+    let shown = over > LEAST_COUNT && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN;
     (whole > WHOLE * gaps.len() as f64 && shown && !is_written(step_rad)).then_some(step_rad)
 }
 
@@ -63,6 +66,8 @@ mod tests {
         let valid = vec![true; 10_000];
         let step = step_rad(&angles(4.321e-7), &valid, 3e-7).unwrap();
         assert!((step / 4.321e-7 - 1.0).abs() < 1e-3, "{step}");
+        // the least count of the log, a noise large
+        assert_eq!(step_rad(&angles(3.123e-7), &valid, 3.14e-7), None);
         assert_eq!(step_rad(&angles(1e-13), &valid, 3e-7), None);
         // far below the noise, and as many digits as were written
         assert_eq!(step_rad(&angles(3e-8), &valid, 3e-7), None);

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! The second part of the root is what the noise itself is known to. Cells are bands of frequency, over the whole log
-//! and in windows of it; each channel by itself.
+//! and in windows of it; each channel by itself. Rows at which the bearing turns around are left out: there every error of the
+//! logged rate is torque, and how large it is, is known least.
 
 use realfft::RealFftPlanner;
 
@@ -15,6 +16,10 @@ use crate::fit::{Problem, of_channel};
 const WINDOW: usize = 2048;
 /// Edges of the bands [Hz].
 const EDGES_HZ: [f64; 8] = [0.0, 1.0, 2.5, 6.0, 15.0, 40.0, 110.0, 300.0];
+/// Rows before and after one at which the bearing turns around that do not count, and share of a window that must.
+const BEFORE: usize = 5;
+const AFTER: usize = 60;
+const COUNTS: f64 = 0.5;
 /// Share to which the power of the noise is known.
 const KNOWN_TO: f64 = 0.1;
 /// Standard deviations that the largest of the windows exceeds by chance.
@@ -23,14 +28,25 @@ const BY_CHANCE: f64 = 4.0;
 /// The largest excess [standard deviations].
 pub(crate) fn left_over(problem: &Problem, whitened: &[f64]) -> f64 {
     let channels = problem.record.channels.len();
-    let valid = &problem.whitener.valid;
+    let steady = steady(&problem.turns);
+    let valid: Vec<bool> = problem.whitener.valid.iter().zip(steady).map(|(valid, steady)| *valid && steady).collect();
     let period_s = problem.record.inputs.period_s;
     (0..channels)
         .map(|channel| {
             let series: Vec<f64> = of_channel(whitened, channel, channels).collect();
-            excess(&series, valid, period_s)
+            excess(&series, &valid, period_s)
         })
         .fold(0.0, f64::max)
+}
+
+/// Rows away from those at which the bearing turns around.
+fn steady(turns: &[bool]) -> Vec<bool> {
+    let mut steady = vec![true; turns.len()];
+    for row in (0..turns.len()).filter(|&row| turns[row]) {
+        let around = row.saturating_sub(BEFORE)..(row + AFTER).min(turns.len());
+        steady[around].fill(false);
+    }
+    steady
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
@@ -44,10 +60,11 @@ fn excess(series: &[f64], valid: &[bool], period_s: f64) -> f64 {
     let mut local: f64 = 0.0;
     for start in (0..=series.len() - length).step_by(length) {
         let there = valid[start..start + length].iter().filter(|valid| **valid).count() as f64 / length as f64;
-        if there < 0.8 {
+        if there < COUNTS {
             continue;
         }
-        let mut segment = series[start..start + length].to_vec();
+        let rows = series[start..start + length].iter().zip(&valid[start..start + length]);
+        let mut segment: Vec<f64> = rows.map(|(value, valid)| if *valid { *value } else { 0.0 }).collect();
         if transform.process(&mut segment, &mut lines).is_err() {
             continue;
         }

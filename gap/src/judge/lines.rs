@@ -1,14 +1,16 @@
-//! A line in time: a torque that beats at a frequency of its own.
+//! A line in time: a torque, or something of the platform that it is a multiple of, beats at a frequency of its own.
 //!
 //! ```text
-//! gain(f) = |sum drive(t) exp(-2 pi i f t)|^2 / (N seen(f))        [nats]        N rows
+//! gain(f) = |sum drive(t) c(t) exp(-2 pi i f t)|^2 / sum |C(f - f')|^2 seen(f')        [nats]        c what beats, C its spectrum
 //! ```
 
 use std::f64::consts::TAU;
 
 use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
 
 use super::group::Group;
+use super::on_float::{driven, gain};
 use crate::fit::Problem;
 
 /// Frequencies that are looked at [Hz]: no slower than two periods of the log.
@@ -17,30 +19,88 @@ const TO_HZ: f64 = 250.0;
 /// Finer than one line a log length by this.
 const FINER: usize = 4;
 
-/// Sine and cosine of the strongest line in a drive; none where the log is too short for one.
-pub(crate) fn line(problem: &Problem, drive: &[f64]) -> Option<Group> {
+/// What beats.
+pub(super) struct Carrier {
+    /// For the report.
+    pub(super) of: &'static str,
+    /// Row by row.
+    pub(super) series: Vec<f64>,
+    /// Whether it is a torque on the float, not on the gimbal.
+    pub(super) on_float: bool,
+}
+
+/// Sine and cosine of the strongest line in a drive that a carrier makes; none where the log is too short for one.
+pub(super) fn line(problem: &Problem, drive: &[f64], carrier: &Carrier) -> Option<Group> {
     let period_s = problem.record.inputs.period_s;
-    let length = (FINER * drive.len()).next_power_of_two();
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut series = transform.make_input_vec();
-    series[..drive.len()].copy_from_slice(drive);
-    let mut lines = transform.make_output_vec();
-    transform.process(&mut series, &mut lines).ok()?;
+    let rows = drive.len();
+    let length = (FINER * rows).next_power_of_two();
+    let own = if carrier.on_float { driven(drive) } else { drive.to_vec() };
+    let beating: Vec<f64> = own.iter().zip(&carrier.series).map(|(drive, carrier)| drive * carrier).collect();
     let step_hz = 1.0 / (length as f64 * period_s);
-    let from_hz = FROM_PERIODS / (drive.len() as f64 * period_s);
-    let within = |hz: f64| (from_hz..TO_HZ.min(0.4 / period_s)).contains(&hz);
     let seen = problem.path.seen();
-    let (_, best_hz) = lines
-        .iter()
-        .enumerate()
-        .map(|(place, line)| (line.norm_sqr(), place as f64 * step_hz))
-        .filter(|(_, hz)| within(*hz))
-        .map(|(power, hz)| (power / seen.at(hz).max(1e-300), hz))
-        .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let independent = (TO_HZ.min(0.4 / period_s) - from_hz) * drive.len() as f64 * period_s;
-    let wave = |quarter: f64| -> Vec<f64> {
-        let at = |row: usize| (TAU * (best_hz * row as f64 * period_s + quarter)).cos();
-        (0..drive.len()).map(at).collect()
+    let seen_at = |place: usize| {
+        let cycles_a_row = place as f64 / length as f64;
+        seen.at(place as f64 * step_hz) * if carrier.on_float { gain(cycles_a_row) } else { 1.0 }
     };
-    Some(Group { of: "a line in time", torques: vec![wave(0.0), wave(-0.25)], choice: independent.max(1.0).ln() })
+    let energy = spread(&spectrum(&carrier.series, length)?, &(0..=length / 2).map(seen_at).collect::<Vec<_>>())?;
+    let from_hz = FROM_PERIODS / (rows as f64 * period_s);
+    let to_hz = TO_HZ.min(0.4 / period_s);
+    let (_, best_hz) = spectrum(&beating, length)?
+        .iter()
+        .zip(&energy)
+        .enumerate()
+        .map(|(place, (power, energy))| (power / energy.max(1e-300), place as f64 * step_hz))
+        .filter(|(_, hz)| (from_hz..to_hz).contains(hz))
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let wave = |quarter: f64| -> Vec<f64> {
+        let at = |(row, carrier): (usize, &f64)| carrier * (TAU * (best_hz * row as f64 * period_s + quarter)).cos();
+        carrier.series.iter().enumerate().map(at).collect()
+    };
+    let independent = (to_hz - from_hz) * rows as f64 * period_s;
+    let (torques, choice) = (vec![wave(0.0), wave(-0.25)], independent.max(1.0).ln());
+    Some(Group { of: carrier.of, torques, on_float: carrier.on_float, choice })
+}
+
+/// Power of the lines of a series with zeros up to a length.
+fn spectrum(series: &[f64], length: usize) -> Option<Vec<f64>> {
+    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let mut padded = transform.make_input_vec();
+    padded[..series.len()].copy_from_slice(series);
+    let mut lines = transform.make_output_vec();
+    transform.process(&mut padded, &mut lines).ok()?;
+    Some(lines.iter().map(Complex::norm_sqr).collect())
+}
+
+/// A spectrum spread about every line by another, `sum over all f' of a(f - f') b(f') / length`.
+fn spread(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
+    let length = 2 * (a.len() - 1);
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (forward, back) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
+    let correlation = |power: &[f64]| -> Option<Vec<f64>> {
+        let mut lines: Vec<Complex<f64>> = power.iter().map(|power| Complex::new(*power, 0.0)).collect();
+        let mut series = back.make_output_vec();
+        back.process(&mut lines, &mut series).ok()?;
+        Some(series)
+    };
+    let mut product: Vec<f64> = correlation(a)?.iter().zip(correlation(b)?).map(|(a, b)| a * b).collect();
+    let mut lines = forward.make_output_vec();
+    forward.process(&mut product, &mut lines).ok()?;
+    Some(lines.iter().map(|line| line.re / (length as f64 * length as f64)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{spectrum, spread};
+
+    #[test]
+    fn closed_form_what_does_not_beat_spreads_nothing() {
+        // of ones, all power is at zero, the number of rows squared over it
+        let length = 64;
+        let of_ones = spectrum(&[1.0; 64], length).expect("a length of its own");
+        let seen: Vec<f64> = (0..=length / 2).map(|place| place as f64).collect();
+        let spread = spread(&of_ones, &seen).expect("the same length");
+        for (place, spread) in spread.iter().enumerate() {
+            assert!((spread - 64.0 * place as f64).abs() < 1e-6, "{place}: {spread}");
+        }
+    }
 }

@@ -12,6 +12,7 @@ mod group;
 mod left_over;
 mod lines;
 mod moments;
+mod on_float;
 mod portrait;
 mod probability;
 mod samples;

@@ -74,6 +74,7 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
     (!chosen.is_empty()).then(|| Group {
         of: "a few moments",
         torques: chosen.iter().map(torque).collect(),
+        on_float: false,
         choice: chosen.iter().map(|moment| moment.choice).sum(),
     })
 }

@@ -9,11 +9,15 @@
 
 use std::fmt;
 
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::torques::groups;
-use crate::fit::{Fit, Linear, Problem, solve};
+use crate::fit::{Fit, Linear, Problem, gram, slices, solve};
 
+/// Amplitude that a torque must have beside those before it, over its own: of torques that are nearly alike a difference as
+/// large as nothing makes them takes what no torque does.
+const APART: f64 = 0.05;
 /// Precision of a torque's size: none, but for what keeps equations regular.
 const FREE: f64 = 1e-9;
 
@@ -52,9 +56,9 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let begin = problem.columns.begin;
     let fixed = begin + problem.columns.nuisances;
     let (slopes, curvatures) = problem.pulled(&precision, &fit.shifts);
-    let gain = |torques: &[Vec<f64>]| -> f64 {
+    let gain = |torques: Vec<Vec<f32>>| -> f64 {
         let mut others = fit.sensitivities.clone();
-        others.extend(torques.iter().map(|torque| problem.torque_column(torque)));
+        others.extend(torques);
         let (gram, mut drive) = linear.joined(&others, &fit.residual);
         let mut weights = precision[..fixed].to_vec();
         for (place, (slope, curvature)) in slopes.iter().zip(&curvatures).enumerate() {
@@ -65,16 +69,46 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         let chosen: Vec<usize> = (0..drive.len()).collect();
         solve(&gram, &drive, &chosen, &weights).map_or(0.0, |solution| solution.gain)
     };
-    let base = gain(&[]);
+    let base = gain(Vec::new());
     let mut strangers: Vec<Stranger> = groups(problem, fit)
         .into_par_iter()
-        .map(|group| Stranger {
-            of: group.of,
-            gain: gain(&group.torques) - base,
-            torques: group.torques.len(),
-            choice: group.choice,
+        .map(|group| {
+            let columns = apart(group.columns(problem, fit));
+            let torques = columns.len();
+            Stranger { of: group.of, gain: gain(columns) - base, torques, choice: group.choice }
         })
         .collect();
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
     strangers
+}
+
+/// Columns without those that the ones before them nearly make.
+fn apart(columns: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
+    let rows = columns.first().map_or(0, Vec::len);
+    let gram = gram(&slices(&columns), 0..rows);
+    let mut kept: Vec<usize> = Vec::new();
+    for place in 0..columns.len() {
+        let own = gram[(place, place)];
+        let with = DVector::from_fn(kept.len(), |i, _| gram[(kept[i], place)]);
+        let among = DMatrix::from_fn(kept.len(), kept.len(), |i, j| gram[(kept[i], kept[j])]);
+        let made = among.cholesky().map_or(0.0, |among| with.dot(&among.solve(&with)));
+        if own - made > APART * APART * own {
+            kept.push(place);
+        }
+    }
+    columns.into_iter().enumerate().filter(|(place, _)| kept.contains(place)).map(|(_, column)| column).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::apart;
+
+    #[test]
+    fn columns_that_others_make_are_left_out() {
+        let wave = |rate: f32| -> Vec<f32> { (0..500_u16).map(|k| (rate * f32::from(k)).sin()).collect() };
+        let sum: Vec<f32> = wave(0.1).iter().zip(wave(0.3)).map(|(a, b)| 2.0 * a - b).collect();
+        let zero = vec![0.0; 500];
+        let kept = apart(vec![wave(0.1), zero, wave(0.1), wave(0.3), sum, wave(0.31)]);
+        assert_eq!(kept, [wave(0.1), wave(0.3), wave(0.31)]);
+    }
 }

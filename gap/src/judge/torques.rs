@@ -1,12 +1,13 @@
 //! Torques that an effect might be, in groups by what they are functions of.
 
 use super::group::Group;
-use super::lines::line;
+use super::lines::{Carrier, line};
 use super::moments::moments;
 use crate::fit::{Fit, Problem};
 
-/// Rms of each torque [N m].
+/// Rms of each torque on the gimbal [N m], and of each drift of the float [rad/s].
 const UNIT_NM: f64 = 1e-4;
+const UNIT_RADPS: f64 = 1e-4;
 /// Ways in which presliding or a cable yields [rad].
 const YIELDS_RAD: [f64; 5] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 /// Times for which an angle is remembered [s].
@@ -34,13 +35,19 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     functions.extend(motion.of_specific_force());
     let way = usize::from(!problem.turns_mostly);
     let choice = |of: &str| if SLOW.contains(&of) { WANDERS_NATS[way] } else { WARY_NATS[way] };
-    let mut groups: Vec<Group> =
-        functions.into_iter().map(|(of, torques)| Group { of, choice: choice(of), torques }).collect();
+    let grouped = |functions: Vec<Functions>, on_float: bool| {
+        functions.into_iter().map(move |(of, torques)| Group { of, choice: choice(of), torques, on_float })
+    };
+    let mut groups: Vec<Group> = grouped(functions, false).chain(grouped(motion.of_float(), true)).collect();
     let drive = problem.path.drive(&problem.whitener, &fit.residual);
-    groups.extend(line(problem, &drive).map(|line| Group { choice: line.choice + WARY_NATS[way], ..line }));
+    let lines = motion.carriers().into_iter().filter_map(|carrier| line(problem, &drive, &carrier));
+    groups.extend(lines.map(|line| Group { choice: line.choice + WARY_NATS[way], ..line }));
     groups.extend(moments(problem, &drive));
-    for torque in groups.iter_mut().flat_map(|group| &mut group.torques) {
-        *torque = scaled(torque).iter().map(|value| UNIT_NM * value).collect();
+    for group in &mut groups {
+        let unit = if group.on_float { UNIT_RADPS } else { UNIT_NM };
+        for torque in &mut group.torques {
+            *torque = scaled(torque).iter().map(|value| unit * value).collect();
+        }
     }
     groups
 }
@@ -62,6 +69,9 @@ struct Motion<'a> {
     load: Series,
     accel: [Series; 3],
     cross: Option<Series>,
+    /// theta, and phi'.
+    float: Series,
+    turning: Series,
 }
 
 impl<'a> Motion<'a> {
@@ -82,6 +92,8 @@ impl<'a> Motion<'a> {
             load: scaled(&inputs.load_nm),
             accel: inputs.accel_mps2.each_ref().map(|axis| scaled(axis)),
             cross: (!inputs.cross_radps.is_empty()).then(|| scaled(&inputs.cross_radps)),
+            float: scaled(&fit.prediction.gyro_angle_rad),
+            turning: scaled(&fit.prediction.gimbal_rate_radps),
         }
     }
 
@@ -126,6 +138,26 @@ impl<'a> Motion<'a> {
             groups.push(("cross rate", vec![cross.clone(), product(cross, cross), product(cross, &self.slip)]));
         }
         groups
+    }
+
+    /// Torques on the float: of its angle, of that and specific force.
+    fn of_float(&self) -> Vec<Functions> {
+        let float = &self.float;
+        let angles = [float.clone(), even(float, 2.0), odd(float, 2.0), odd(float, 3.0)];
+        let tilted = self.accel.each_ref().map(|axis| product(axis, float));
+        vec![("gyro angle", angles.to_vec()), ("gyro angle and specific force", tilted.to_vec())]
+    }
+
+    /// What may beat in time: a torque, the motor's torque, friction, the gyro's wheel.
+    fn carriers(&self) -> [Carrier; 4] {
+        let ones = vec![1.0; self.time.len()];
+        [
+            ("a line in time", ones, false),
+            ("motor torque and a line in time", self.torque.clone(), false),
+            ("direction and a line in time", self.sign.clone(), false),
+            ("gyro's rate and a line in time", self.turning.clone(), true),
+        ]
+        .map(|(of, series, on_float)| Carrier { of, series, on_float })
     }
 
     /// A first-order lag.

@@ -97,7 +97,10 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
     };
     let relative = |tolerance, name, field| of(tolerance, name, false, field);
     let added = |tolerance, name, field| of(tolerance, name, true, field);
-    vec![
+    // what is logged off by a bias b is what H b on the float would do
+    let bias_nm = physics.config.gyro.angular_momentum_nm_s * tolerance.vehicle_rate_bias_radps;
+    let biased = (bias_nm > 0.0).then(|| added(bias_nm, "bias of the vehicle rate", |p| &mut p.float_nm));
+    let mut all = vec![
         relative(tolerance.friction_level, "friction_level", |p| &mut p.friction.load_factor),
         relative(tolerance.viscous_friction, "bearing viscosity", |p| &mut p.friction.viscous_factor),
         added(tolerance.mass_unbalance * size, "unbalance x", |p| &mut p.config.unbalance.x_kg_m),
@@ -123,7 +126,9 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative(default, "T9", |p| &mut p.config.servo.lag_time_constants_s[3]),
         relative(tolerance.pickoff_scale, "pickoff_scale", |p| &mut p.measurement.pickoff_factor),
         relative(tolerance.torque_scale, "torque_scale", |p| &mut p.measurement.torque_factor),
-    ]
+    ];
+    all.extend(biased);
+    all
 }
 
 #[cfg(test)]
@@ -146,6 +151,19 @@ mod tests {
             assert_eq!(of(&format!("accelerometers about {axis}")), 1e-3);
         }
         assert_eq!((of("loop_gain"), of("friction_level")), (0.03, 0.15));
+    }
+
+    #[test]
+    fn contract_a_rate_has_a_bias_where_the_table_says_so() {
+        let physics = platform(&ModelFile::default());
+        let of = |vehicle_rate_bias_radps| {
+            let tolerance = Tolerance { vehicle_rate_bias_radps, ..Tolerance::default() };
+            nuisances(&tolerance, &physics).into_iter().find(|own| own.name == "bias of the vehicle rate")
+        };
+        assert!(of(0.0).is_none());
+        let bias = of(2e-5).expect("a nominal parameter");
+        assert!((bias.tolerance / (2e-5 * physics.config.gyro.angular_momentum_nm_s) - 1.0).abs() < 1e-12);
+        assert!((bias.change(&physics, bias.tolerance) / bias.tolerance - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 use gimbal_log::Column;
 
+use super::spikes::spikes;
+
 /// What an output is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
@@ -48,5 +50,17 @@ impl Channel {
             }
         }
         Self { signal, values, valid }
+    }
+
+    /// Takes samples that stand alone for missing, and says so.
+    pub(super) fn without_spikes(&mut self) -> Option<String> {
+        let found = spikes(&self.values, &self.valid);
+        for &(row, value) in &found {
+            (self.values[row], self.valid[row]) = (value, false);
+        }
+        let name = self.signal.column().name();
+        let told =
+            || format!("{} of {} samples of {name} stand alone: they do not count", found.len(), self.values.len());
+        (!found.is_empty()).then(told)
     }
 }

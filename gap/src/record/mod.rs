@@ -6,6 +6,7 @@ mod part;
 mod plateau;
 mod quiet;
 mod rough;
+mod spikes;
 mod stuck;
 
 use std::ops::Range;
@@ -20,7 +21,7 @@ pub(crate) use part::BEGINNING_S;
 pub(crate) use plateau::{peak_rad, plateau};
 pub use quiet::RateNoise;
 pub(crate) use quiet::between;
-pub(crate) use rough::rough;
+pub(crate) use rough::{rough, tails};
 
 /// Shortest log that a diagnosis is made from [s].
 const SHORTEST_S: f64 = 6.0;
@@ -102,7 +103,9 @@ impl Record {
                 faults.push(format!("{} never changes", signal.column().name()));
                 continue;
             }
-            channels.push(Channel::new(signal, grid.place(values)));
+            let mut channel = Channel::new(signal, grid.place(values));
+            notes.extend(channel.without_spikes());
+            channels.push(channel);
         }
         let rate_noise = RateNoise::logged(&inputs.rate_radps);
         let mut record = Self {

@@ -1,17 +1,18 @@
 //! The stop, as the pick-off shows it: a plateau at its largest excursion.
 
 use super::rough::rough;
+use super::spikes::least_count;
 
 /// Share of its largest excursion within which the pick-off counts as on the stop, or noise in which it does.
 const SHARE: f64 = 4e-3;
 const NOISES: f64 = 8.0;
-/// How far the rate before it would have carried the float until its middle, over that share: less than five for the
-/// smooth peak of any parabola.
+/// How far the float came in as long a time as the shortest plateau has, and how far that rate would have carried it until the
+/// plateau's middle, over that band: no parabola of any width has both.
+const CAME: f64 = 10.0;
 const ONWARD: f64 = 7.0;
-/// The same, and how far it came in as long a time as the shortest plateau has, over the scatter on the plateau: wherever
-/// the stop is, the float stands still on it as no peak does.
-const FLAT: f64 = 150.0;
+/// The same over the scatter on the plateau: wherever the stop is, the float stands still on it as no peak does.
 const ENTERS: f64 = 30.0;
+const FLAT: f64 = 150.0;
 /// Least share of the nominal stop at which a plateau that scatters is one.
 const LEAST_STOP: f64 = 0.2;
 /// Shortest plateau [s].
@@ -38,7 +39,7 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
     let least = (SHORTEST_S / period_s) as usize;
     let finite: Vec<bool> = theta_rad.iter().map(|value| value.is_finite()).collect();
     let noise = rough(theta_rad, &finite);
-    let (band, least_scatter) = ((SHARE * peak).max(NOISES * noise), noise.max(least_count_rad(theta_rad)));
+    let (band, least_scatter) = ((SHARE * peak).max(NOISES * noise), noise.max(least_count(theta_rad)));
     let mut on_stop = vec![false; theta_rad.len()];
     let mut level = Vec::new();
     let mut start = 0_usize;
@@ -49,7 +50,7 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
         // it comes in with a rate, and stands still at once
         let came = start.checked_sub(least).map_or(0.0, |before| peak - theta_rad[before].abs());
         let onward = came * 0.5 * (k - start) as f64 / least as f64;
-        let steep = came > 10.0 * SHARE * peak && onward > ONWARD * SHARE * peak;
+        let steep = came > CAME * band && onward > ONWARD * band;
         let flat = || {
             let scatter = scatter_rad(&theta_rad[start..k]).max(least_scatter);
             came > ENTERS * scatter && onward > FLAT * scatter
@@ -64,12 +65,6 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
     level.get(level.len() / 2).map(|&level_rad| Plateau { level_rad, on_stop })
 }
 
-/// Smallest step between two samples.
-fn least_count_rad(theta_rad: &[f64]) -> f64 {
-    let steps = theta_rad.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min)
-}
-
 /// Scatter of most of the samples, as that of a normal distribution between its quartiles.
 fn scatter_rad(theta_rad: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = theta_rad.iter().map(|value| value.abs()).collect();
@@ -79,15 +74,26 @@ fn scatter_rad(theta_rad: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
     use super::plateau;
 
     const STOP_RAD: f64 = 8.7e-3;
 
     /// A swing of a fifth of a second, seen by a pick-off with a noise of 3e-7 rad, held at a level.
     fn swung(peak_rad: f64, held_rad: f64) -> Vec<f64> {
-        let noise = |k: usize| (((k * 7919) % 1000) as f64 / 500.0 - 1.0) * 5e-7;
-        let angle = |k: usize| peak_rad * (std::f64::consts::PI * k as f64 * 1e-2).sin();
-        (0..6000).map(|k| angle(k).clamp(-held_rad, held_rad) + noise(k)).collect()
+        noisy(peak_rad, held_rad, 1e-2, 3e-7)
+    }
+
+    /// A swing of so many half turns a row under noise.
+    fn noisy(peak_rad: f64, held_rad: f64, half_turns: f64, noise_rad: f64) -> Vec<f64> {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let angle = |k: usize| peak_rad * (std::f64::consts::PI * k as f64 * half_turns).sin();
+        let mut read =
+            |k: usize| angle(k).clamp(-held_rad, held_rad) + noise_rad * rng.sample::<f64, _>(StandardNormal);
+        (0..6000).map(&mut read).collect()
     }
 
     #[test]
@@ -107,5 +113,17 @@ mod tests {
                 swung(peak_rad, f64::MAX).iter().map(|angle| step_rad * (angle / step_rad).round()).collect();
             assert_eq!(plateau(&read, 1e-3, 50.0 * STOP_RAD), None, "{peak_rad} in steps");
         }
+    }
+
+    #[test]
+    fn closed_form_a_noisy_peak_of_any_width_is_no_stop() {
+        for half_turns in [3e-2, 1e-2, 3e-3, 1e-3] {
+            for noise_rad in [1e-6, 6e-6, 2e-5] {
+                let own = plateau(&noisy(2.5e-3, f64::MAX, half_turns, noise_rad), 1e-3, STOP_RAD);
+                assert_eq!(own, None, "{half_turns} half turns a row, {noise_rad} rad");
+            }
+        }
+        let own = plateau(&noisy(4e-3, 2.5e-3, 1e-2, 6e-6), 1e-3, STOP_RAD).expect("a stop");
+        assert!((own.level_rad / 2.5e-3 - 1.0).abs() < 1e-2, "{}", own.level_rad);
     }
 }

@@ -1,0 +1,81 @@
+//! Names of what a set holds: its effects, and the nominal parameters that it leaves beyond what is known of them.
+
+use gimbal_model_file::AxisModel;
+
+use crate::axis::balance::{Balance, nominal};
+use crate::axis::library::{NOMINAL, Shape, rms};
+use crate::axis::motion::Motion;
+
+/// A nominal parameter is an effect from this many tolerances on.
+pub(in crate::axis) const BEYOND: f64 = 1.15;
+
+/// Nominal parameters beyond what is known of them; all of them by one factor are one effect.
+pub(super) fn beyond(balance: &Balance, model: &AxisModel, shifts: [f64; 3], errors: [f64; 3]) -> Vec<Shape> {
+    let base = nominal(model);
+    // and worth the price of an effect
+    let grams = &balance.problem.grams;
+    let worth = |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
+    let outside: Vec<usize> =
+        (0..3).filter(|&index| worth(index) && !within(model, index, shifts[index], errors[index])).collect();
+    let known: Vec<usize> = (0..3).filter(|&index| base[index] > 0.0).collect();
+    if outside.len() > 1
+        && outside.iter().all(|index| known.contains(index))
+        && !model.known_good.iter().any(|good| good == "torque_scale")
+    {
+        let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
+        let factors: Vec<(f64, f64)> = known
+            .iter()
+            .map(|&i| (shifts[i] / base[i], tolerance[i].powi(2) + (2.0 * errors[i] / base[i]).powi(2)))
+            .collect();
+        let weight: f64 = factors.iter().map(|(_, variance)| 1.0 / variance).sum();
+        let mean = factors.iter().map(|(factor, variance)| factor / variance).sum::<f64>() / weight;
+        if factors.iter().all(|(factor, variance)| ((1.0 + factor) / (1.0 + mean) - 1.0).powi(2) < 2.0 * variance) {
+            return vec![Shape::Scale];
+        }
+    }
+    outside.into_iter().map(|index| NOMINAL[index].clone()).collect()
+}
+
+/// Names of a set's effects, each once.
+pub(super) fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> Vec<String> {
+    let (columns, amplitudes) = balance.fit(members);
+    let shifts = balance.shifts(members, &columns, &amplitudes);
+    let shapes = members.iter().map(|&m| &balance.problem.candidates[m].shape);
+    let mut names: Vec<String> = shapes
+        .filter(|shape| !NOMINAL.contains(shape))
+        .map(|shape| label(shape, &balance.motion))
+        .chain(beyond(balance, model, shifts, balance.of_noise()).iter().map(|shape| shape.effect().to_owned()))
+        .collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+/// Name of an effect; channels have theirs beside it.
+pub(in crate::axis) fn label(shape: &Shape, motion: &Motion) -> String {
+    match shape {
+        Shape::Load { channel }
+        | Shape::LoadFriction { channel }
+        | Shape::LoadGain { channel }
+        | Shape::LoadRipple { channel, .. } => {
+            format!("{}:{}", shape.effect(), motion.auxiliary[*channel].0)
+        }
+        _ => shape.effect().to_owned(),
+    }
+}
+
+/// Whether what is left is small beside what the tolerance of the parameters alone allows.
+pub(super) fn tolerated(balance: &Balance, model: &AxisModel) -> bool {
+    let motion = &balance.motion;
+    let sizes = [&motion.a, &motion.v, &motion.s].map(|values| rms(&motion.pick(values)));
+    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
+    let allowed: f64 = (0..3).map(|p| (tolerance[p] * nominal(model)[p] * sizes[p]).powi(2)).sum();
+    let rest = rms(&balance.residual(&[]));
+    rest.powi(2) < allowed.max(2.0 * motion.floor.powi(2))
+}
+
+/// Whether a shift lies within what is known of the parameter.
+fn within(model: &AxisModel, index: usize, shift: f64, error: f64) -> bool {
+    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb][index];
+    shift.abs() - error <= BEYOND * tolerance * nominal(model)[index]
+}

@@ -1,0 +1,137 @@
+//! Verdict, probabilities, parameters with errors, and how far the gap shrinks on blocks that were not fitted.
+
+mod beyond;
+mod found;
+mod parameters;
+mod rank;
+mod shrunk;
+
+pub(super) use beyond::{BEYOND, label};
+use beyond::{names, tolerated};
+use found::{Fitted, found};
+pub use parameters::Parameter;
+pub(super) use parameters::{deviation, parameters};
+use rank::{doubt, rank};
+pub use shrunk::Shrunk;
+pub(super) use shrunk::{by_block, shrunk};
+
+use gimbal_model_file::AxisModel;
+
+use super::balance::Balance;
+use super::search::Set;
+use crate::judge::Verdict;
+
+/// Share of the gap that may be left over by what explains it.
+const LEFT: f64 = 0.03;
+/// A fit that leaves more than this of a log that it did not see explains a part.
+const CARRIED: f64 = 0.2;
+/// From this probability of something unknown on nothing is explained.
+const UNEXPLAINED: f64 = 0.6;
+/// Share of the gap that is a trifle.
+const TRIFLE: f64 = 0.01;
+/// Least probability of a set that is not told apart, over that of the set named.
+const RIVAL: f64 = 0.1;
+/// A gap is one from this power over the floor on.
+const NOTABLE: f64 = 1.5;
+
+/// An effect that is named.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// Its name.
+    pub effect: String,
+    /// Its block.
+    pub block: &'static str,
+    /// Marginal probability.
+    pub probability: f64,
+    /// Parameters.
+    pub parameters: Vec<Parameter>,
+    /// Share of the gap that it takes away.
+    pub removes: f64,
+    /// Where it shows: `effort` (the balance), `control law` or `columns`.
+    pub shows_in: &'static str,
+}
+
+/// A set of effects.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranked {
+    /// Names, in alphabetical order, each once.
+    pub effects: Vec<String>,
+    /// Probability of the set.
+    pub probability: f64,
+}
+
+/// What is decided on a balance.
+#[derive(Debug)]
+pub(super) struct Judged {
+    pub(super) verdict: Verdict,
+    pub(super) found: Vec<Found>,
+    pub(super) ranking: Vec<Ranked>,
+    pub(super) alternatives: Vec<Ranked>,
+    pub(super) unknown_probability: f64,
+    pub(super) shrunk: Shrunk,
+    /// Drawn amplitudes of the set's columns, for bands of confidence.
+    pub(super) drawn: Vec<Vec<f64>>,
+}
+
+impl Judged {
+    /// Takes back what does not carry over: what the fit leaves of a log that it did not see is no less unknown than what
+    /// it leaves of its own.
+    pub(super) fn carried(&mut self, left: f64) {
+        let unknown = doubt(left, 0);
+        if self.verdict == Verdict::NoGap || unknown <= self.unknown_probability {
+            return;
+        }
+        let kept = (1.0 - unknown) / (1.0 - self.unknown_probability).max(1e-9);
+        self.unknown_probability = unknown;
+        self.found.iter_mut().for_each(|found| found.probability *= kept);
+        self.ranking.iter_mut().chain(&mut self.alternatives).for_each(|set| set.probability *= kept);
+        if unknown > UNEXPLAINED {
+            self.verdict = Verdict::Unexplained;
+        } else if matches!(self.verdict, Verdict::Explained | Verdict::CannotTell) && left > CARRIED {
+            self.verdict = Verdict::PartlyExplained;
+        }
+    }
+}
+
+/// Judges the best set.
+pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged {
+    let fitted = Fitted::new(balance, best);
+    let counts = &balance.problem.grams.counts;
+    let before = by_block(&balance.target, &balance.motion);
+    let floor = balance.motion.floor;
+    let shrunk = shrunk("effort".to_owned(), &model.effort_unit, &before, &best.held_out, counts, floor);
+    let (ranking, unknown_probability) = rank(balance, best, &fitted.times, &shrunk, model);
+    let found = found(balance, &fitted, model, &ranking, shrunk.reduction_percent);
+    let alternatives = alternatives(&ranking, &names(balance, &best.members, model), &found);
+    let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
+    let left = (shrunk.after.powi(2) - shrunk.noise_floor.powi(2)).max(0.0);
+    let there = (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(1e-300);
+    let verdict = if found.is_empty() {
+        if gap && left > 0.5 * there && !tolerated(balance, model) { Verdict::Unexplained } else { Verdict::NoGap }
+    } else if unknown_probability > UNEXPLAINED {
+        Verdict::Unexplained
+    } else if left > LEFT * there && left > NOTABLE * shrunk.noise_floor.powi(2) {
+        Verdict::PartlyExplained
+    } else if alternatives.is_empty() {
+        Verdict::Explained
+    } else {
+        Verdict::CannotTell
+    };
+    let alternatives = if verdict == Verdict::NoGap { Vec::new() } else { alternatives };
+    Judged { verdict, found, ranking, alternatives, unknown_probability, shrunk, drawn: fitted.drawn }
+}
+
+/// Sets of a ranking that are not told apart from the one that is named: neither part of it nor more than it, and nearly as
+/// probable. What differs in a trifle alone is told by the probability of the trifle.
+fn alternatives(ranking: &[Ranked], own: &[String], found: &[Found]) -> Vec<Ranked> {
+    let own_probability = ranking.iter().find(|set| set.effects == own).map_or(0.0, |set| set.probability);
+    let rival = |set: &&Ranked| {
+        set.effects != own
+            && set.probability > RIVAL * own_probability
+            && !own.iter().all(|name| set.effects.contains(name))
+            && !set.effects.iter().all(|name| own.contains(name))
+    };
+    let misses =
+        |set: &&Ranked| found.iter().any(|found| found.removes >= TRIFLE && !set.effects.contains(&found.effect));
+    ranking.iter().filter(rival).filter(misses).cloned().collect()
+}
