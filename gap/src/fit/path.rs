@@ -6,6 +6,13 @@
 //!
 //! A torque b(t) takes `(b . drive)^2 / (2 sum b^2 seen)` nats of a residual. What the bearing does as it turns around
 //! is left out: the loop is linear here.
+//!
+//! A torque that is like nothing shows too where there are two channels or more: their noises know nothing of one
+//! another, a torque is in all of them.
+//!
+//! ```text
+//! agreement = sum Re(D_a D_b*) / sqrt(1/2 sum |D_a D_b|^2)       D_a = (G_a / sqrt(P_a))* R_a, lines of one channel's drive
+//! ```
 
 use realfft::num_complex::Complex;
 
@@ -60,16 +67,40 @@ impl Path {
     /// The drive of a torque at each row, of a whitened residual.
     pub(crate) fn drive(&self, whitener: &Whitener, whitened: &[f64]) -> Vec<f64> {
         let plans = whitener.plans();
-        let channels = self.lines.len();
-        let mut drive = vec![0.0; self.rows];
-        for (channel, lines) in self.lines.iter().enumerate() {
-            let series = of_channel(whitened, channel, channels);
-            let mut product: Vec<Complex<f64>> =
-                plans.lines(series).iter().zip(lines).map(|(a, b)| a * b.conj() / plans.length() as f64).collect();
-            let back = plans.series(&mut product);
-            drive.iter_mut().zip(back).for_each(|(drive, back)| *drive += back);
+        let mut sum = vec![Complex::new(0.0, 0.0); self.lines.first().map_or(0, Vec::len)];
+        for driven in self.driven(whitener, whitened) {
+            sum.iter_mut().zip(driven).for_each(|(sum, line)| *sum += line / plans.length() as f64);
         }
+        let mut drive = if sum.is_empty() { Vec::new() } else { plans.series(&mut sum) };
+        drive.resize(self.rows, 0.0);
         drive
+    }
+
+    /// How far the channels agree, two by two, on a torque that is slower than so much: in standard deviations of what
+    /// noises that know nothing of one another come to.
+    pub(crate) fn agreement(&self, whitener: &Whitener, whitened: &[f64], to_hz: f64) -> f64 {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
+        let count = (to_hz / self.step_hz) as usize;
+        let driven: Vec<Vec<Complex<f64>>> = self.driven(whitener, whitened).collect();
+        let (mut sum, mut square) = (0.0, 0.0);
+        for (place, one) in driven.iter().enumerate() {
+            for other in &driven[..place] {
+                for product in one.iter().zip(other).skip(1).take(count).map(|(a, b)| a * b.conj()) {
+                    sum += product.re;
+                    square += 0.5 * product.norm_sqr();
+                }
+            }
+        }
+        sum / f64::max(square, 1e-300).sqrt()
+    }
+
+    /// Lines of the drive, channel by channel.
+    fn driven(&self, whitener: &Whitener, whitened: &[f64]) -> impl Iterator<Item = Vec<Complex<f64>>> {
+        let channels = self.lines.len();
+        self.lines.iter().enumerate().map(move |(channel, lines)| {
+            let series = of_channel(whitened, channel, channels);
+            whitener.plans().lines(series).iter().zip(lines).map(|(a, b)| a * b.conj()).collect()
+        })
     }
 
     /// What the channels see of a torque of 1 N m, over the noise.

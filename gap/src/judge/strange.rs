@@ -6,6 +6,9 @@
 //! ```
 //!
 //! Of n torques, chance gives a gain of n, with a scatter of sqrt(2 n).
+//!
+//! A torque at random depends on nothing; that all sensors show the same one tells it from their noise, whatever the
+//! spectra of that are: its gain is the square of their agreement.
 
 use std::fmt;
 
@@ -18,6 +21,9 @@ use crate::fit::{Fit, Linear, Problem, gram, slices, solve};
 /// Amplitude that a torque must have beside those before it, over its own: of torques that are nearly alike a difference as
 /// large as nothing makes them takes what no torque does.
 const APART: f64 = 0.05;
+/// A torque that is a function of nothing, and up to where sensors may agree on one: slower than the loop [Hz].
+const AT_RANDOM: &str = "a torque at random that several sensors show";
+const AGREED_HZ: f64 = 8.0;
 /// Precision of a torque's size: none, but for what keeps equations regular.
 const FREE: f64 = 1e-9;
 
@@ -78,6 +84,8 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
             Stranger { of: group.of, gain: gain(columns) - base, torques, choice: group.choice }
         })
         .collect();
+    let agreement = problem.path.agreement(&problem.whitener, &fit.residual, AGREED_HZ).max(0.0);
+    strangers.push(Stranger { of: AT_RANDOM, gain: agreement.powi(2), torques: 1, choice: 0.0 });
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
     strangers
 }

@@ -57,6 +57,7 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
             Weighed { effects: names(fit), fit: Some(index), nats, cost, rare }
         })
         .collect();
+    best_of_each(&mut all);
     let excess = (search.null.square - closest.square).max(1.0);
     worth_their_more(&mut all, LEAST_SHARE * excess, |index| search.fits[index].square);
     for glimpse in &search.glimpses {
@@ -67,6 +68,19 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         }
     }
     all
+}
+
+/// Of fits of the same effects, which began elsewhere and stand still elsewhere, the one that is worth most.
+fn best_of_each(all: &mut Vec<Weighed>) {
+    all.sort_by(|a, b| b.nats.total_cmp(&a.nats));
+    let mut seen: Vec<Vec<&str>> = Vec::new();
+    all.retain(|set| {
+        let new = !seen.contains(&set.effects);
+        if new {
+            seen.push(set.effects.clone());
+        }
+        new
+    });
 }
 
 /// The set that was fitted and has most of something, of those that have any.
