@@ -6,6 +6,7 @@ use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms, shapes};
 use super::motion::Motion;
 use super::regress::Grams;
+use super::resonance::modes;
 use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
 
 /// Numbers of waves that are kept from the search, for each kind of ripple.
@@ -16,6 +17,8 @@ const SLIP_ROWS: usize = 400;
 const STEADY: f64 = 0.97;
 /// Play of a hysteresis at most, over the travel.
 const WIDEST_PLAY: f64 = 0.5;
+/// Frequencies of a mode, about that of the scan, among which the best one is.
+const MODE_SPAN: f64 = 1.08;
 /// A column must keep this share of its power beside the nominal parameters, and this much through the band.
 const LEAST_KEPT: f64 = 1e-4;
 const LEAST_PASSED: f64 = 0.02;
@@ -34,6 +37,8 @@ pub(super) struct Balance {
     pub(super) problem: Problem,
     /// Effects that this motion cannot show.
     pub(super) hidden: Vec<&'static str>,
+    /// Whether effort and rate have one sign throughout: a dead zone is then friction.
+    pub(super) dead_zone_is_friction: bool,
 }
 
 /// Nominal parameters.
@@ -86,6 +91,9 @@ impl Balance {
         let mut hidden: Vec<&'static str> = Vec::new();
         let mut tried = shapes(&motion);
         tried.extend(waves(&motion, &target, &base));
+        if !motion.stands {
+            tried.extend(modes(&motion, &target, &base));
+        }
         tried.retain(|shape| !model.known_good.iter().any(|good| good == shape.effect()));
         let made: Vec<(Shape, Vec<Vec<f64>>)> = {
             use rayon::prelude::*;
@@ -113,6 +121,7 @@ impl Balance {
             columns.extend(grid);
             candidates.push(Candidate { shape, columns: (start..columns.len()).collect() });
         }
+        let made_dead = candidates.iter().any(|candidate| candidate.shape == Shape::DeadZone);
         let mut grams = Grams::new(&columns, &target, &motion.block);
         candidates.retain(|candidate| {
             let released = NOMINAL.contains(&candidate.shape);
@@ -124,6 +133,8 @@ impl Balance {
             }
             shows
         });
+        let dead = |candidate: &Candidate| candidate.shape == Shape::DeadZone;
+        let dead_zone_is_friction = made_dead && !candidates.iter().any(dead);
         hidden.sort_unstable();
         hidden.dedup();
         hidden.retain(|effect| !candidates.iter().any(|candidate| candidate.shape.effect() == *effect));
@@ -142,7 +153,7 @@ impl Balance {
             slip,
             within: within(model, parameters),
         };
-        Self { motion, target, effort, columns, problem, hidden }
+        Self { motion, target, effort, columns, problem, hidden, dead_zone_is_friction }
     }
 
     /// Searches, takes the priors from what is then left, refines the shapes, and searches again.
@@ -231,6 +242,8 @@ impl Balance {
                 if name == "wave_number" { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
             let (from, to) = match &shape {
                 Shape::ViscousCurve { .. } => (0.45, 0.85),
+                // a resonance has one peak no further than its neighbours in the scan
+                Shape::Mode { .. } => (value / MODE_SPAN, value * MODE_SPAN),
                 // wider than that it is a spring
                 Shape::Hysteresis { .. } => (value / span, (value * span).min(WIDEST_PLAY * self.motion.travel)),
                 _ => (value / span, value * span),

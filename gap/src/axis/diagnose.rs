@@ -79,6 +79,7 @@ const NOT_CARRIED: f64 = 0.6;
 fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Motion) {
     columns::unwrap(&mut log);
     let checked = columns::check(&log, model);
+    columns::in_units(&mut log, &checked);
     let from = checked.from.unwrap_or(MotionFrom::Position);
     let late = checked.faults.iter().find(|fault| fault.effect == "velocity_delay").map(|fault| fault.parameters[0].1);
     let scaled = checked.faults.iter().any(|fault| fault.effect.ends_with("_scale"));
@@ -344,9 +345,13 @@ fn detectable(balance: &Balance, best: &Set, after: &[f64]) -> Vec<(String, Opti
     let variance = rms(after).powi(2).max(balance.motion.floor.powi(2)) * lag as f64;
     let mut sizes: Vec<(String, Option<f64>)> = Vec::new();
     for candidate in &problem.candidates {
-        let column = candidate.columns[0];
-        let kept = problem.grams.keeps(column, &beside) * problem.grams.power(column);
-        let size = (kept > 0.0).then(|| 5.0 * (variance / kept).sqrt());
+        // a nominal parameter stands in the balance already, and is an effect beyond its tolerance
+        let base = super::library::NOMINAL.iter().position(|nominal| *nominal == candidate.shape);
+        let column = base.unwrap_or(candidate.columns[0]);
+        let others: Vec<usize> = beside.iter().copied().filter(|other| !candidate.columns.contains(other)).collect();
+        let kept = problem.grams.keeps(column, &others) * problem.grams.power(column);
+        let known = base.map_or(0.0, |base| problem.within[base]);
+        let size = (kept > 0.0).then(|| known + 5.0 * (variance / kept).sqrt());
         let effect = super::judge::label(&candidate.shape, &balance.motion);
         match sizes.iter_mut().find(|(name, _)| *name == effect) {
             Some((_, old)) => *old = old.zip(size).map(|(a, b)| a.min(b)).or(size),

@@ -31,6 +31,8 @@ const KEPT_WAVES: usize = 8;
 const BEYOND: f64 = 1.15;
 /// An output is at its limit from this share of it on.
 const AT_LIMIT: f64 = 0.995;
+/// Share of what is left at known gains that free ones may leave, to be believed.
+const FREED: f64 = 0.25;
 /// Rows that a law must be held against, at least.
 const LEAST_ROWS: usize = 200;
 /// Share of the output below which a law is as good as any.
@@ -179,6 +181,15 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
             problem.grams.precision[place] = variance / (controller.tolerance * gain).powi(2);
         }
         best = problem.search(best.members);
+    }
+    // gains that are far off hold the law where it is: free, they must leave a small part of that
+    let held = std::mem::replace(&mut problem.grams.precision, vec![0.0; columns.len()]);
+    let free = problem.search(Vec::new());
+    let better = |free: f64, held: f64| free - problem.floor_square < FREED * (held - problem.floor_square);
+    if better(free.square(), best.square()) {
+        best = free;
+    } else {
+        problem.grams.precision = held;
     }
     let set = problem.columns(&best.members);
     let fit = problem.grams.fit(&set);

@@ -7,7 +7,10 @@
 //! Nothing here is a function of the logged effort: what hangs on the effort (`dead_zone`, `torque_curve`, lag, delay)
 //! hangs on the effort that the motion needs, so that no column can be the regressand in disguise.
 
-use super::motion::Motion;
+use std::f64::consts::TAU;
+
+use super::motion::{LEAST_WAVES, Motion};
+use super::resonance;
 
 /// What an effect looks like; numbers are its shape parameters.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +59,13 @@ pub(super) enum Shape {
     DeadZone,
     TorqueCurve,
     Lag,
+    /// A mode above the band, of which the balance shows how it begins.
     Flexible,
+    /// A mass on a spring, its frequency in the band.
+    Mode {
+        frequency_hz: f64,
+        damping: f64,
+    },
     Backlash {
         width: f64,
     },
@@ -107,7 +116,7 @@ impl Shape {
             Self::DeadZone => "dead_zone",
             Self::TorqueCurve => "torque_curve",
             Self::Lag => "motor_lag",
-            Self::Flexible => "flexible_mode",
+            Self::Flexible | Self::Mode { .. } => "flexible_mode",
             Self::Backlash { .. } => "backlash",
             Self::Load { .. } => "external_load",
             Self::LoadFriction { .. } => "load_friction",
@@ -145,7 +154,7 @@ impl Shape {
             | Self::TorqueCurve
             | Self::Lag
             | Self::LoadGain { .. } => "servo",
-            Self::Inertia | Self::Flexible | Self::Backlash { .. } => "structure",
+            Self::Inertia | Self::Flexible | Self::Mode { .. } | Self::Backlash { .. } => "structure",
             Self::Scale | Self::BiasDrift { .. } => "measurement",
         }
     }
@@ -187,6 +196,7 @@ impl Shape {
             | Self::DeadZone
             | Self::Lag
             | Self::RateDelay
+            | Self::Mode { .. }
             | Self::Flexible => amplitudes[0] > 0.0,
             Self::Presliding { .. } => amplitudes[0] > 0.0 && amplitudes[0] < 1.5 * level.abs(),
             Self::Backlash { .. } => amplitudes[0] < 0.0 && amplitudes[1] < 0.0,
@@ -208,6 +218,7 @@ impl Shape {
             | Self::Ripple { wave_number }
             | Self::MotorRipple { wave_number } => vec![("wave_number", wave_number)],
             Self::Hysteresis { width } | Self::Backlash { width } => vec![("width", width)],
+            Self::Mode { frequency_hz, damping } => vec![("frequency_hz", frequency_hz), ("damping_ratio", damping)],
             _ => Vec::new(),
         }
     }
@@ -227,6 +238,7 @@ impl Shape {
             | Self::Ripple { wave_number: place }
             | Self::MotorRipple { wave_number: place }
             | Self::Hysteresis { width: place }
+            | Self::Mode { frequency_hz: place, .. }
             | Self::Backlash { width: place } => *place = number,
             _ => {}
         }
@@ -274,6 +286,7 @@ impl Shape {
             Self::RateDelay => vec![m.a.clone()],
             Self::Lag => vec![m.derivative(&m.whole.apply(&m.needed))],
             Self::Flexible => vec![m.derivative(&m.derivative(&m.rest.apply(&m.a)))],
+            Self::Mode { frequency_hz, damping } => vec![resonance::column(&m.a, m.period_s, frequency_hz, damping)],
             Self::Backlash { width } => {
                 let p = play_state(&m.q, width);
                 vec![by(&|i| (1.0 - p[i].abs()) * m.a[i]), by(&|i| (1.0 - p[i].abs()) * m.s[i])]
@@ -287,7 +300,7 @@ impl Shape {
 
     /// The shapes on the grid of the balance.
     pub(super) fn on_grid(&self, m: &Motion) -> Vec<Vec<f64>> {
-        let smoothed = matches!(self, Self::Inertia | Self::Viscous);
+        let smoothed = matches!(self, Self::Inertia | Self::Viscous | Self::Mode { .. });
         self.columns(m).iter().map(|column| if smoothed { m.smoothed(column) } else { m.raw(column) }).collect()
     }
 }
@@ -327,7 +340,10 @@ pub(super) fn play_state(q: &[f64], width: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Everything that is tried without a number of waves.
+/// Travel from which on one wave a turn is tried, however few of them the others must have.
+const GRAVITY_SHOWS_RAD: f64 = 1.5;
+
+/// Everything that is tried without a search for numbers of waves.
 pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
     let mut shapes = vec![
         Shape::Inertia,
@@ -360,7 +376,11 @@ pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
             shapes.push(Shape::Backlash { width: length });
         }
     }
-    for share in [0.03, 0.1, 0.3] {
+    // gravity on an arm has one wave a turn; on a shorter way it is a spring
+    if m.rotary && (GRAVITY_SHOWS_RAD..LEAST_WAVES * TAU).contains(&m.travel) {
+        shapes.push(Shape::Ripple { wave_number: 1.0 });
+    }
+    for share in [0.03, 0.055, 0.1, 0.18, 0.3] {
         shapes.push(Shape::Hysteresis { width: share * m.travel });
     }
     for share in [0.05, 0.15, 0.4, 1.0] {

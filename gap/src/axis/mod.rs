@@ -13,6 +13,7 @@ mod motion;
 mod place;
 mod regress;
 mod report;
+mod resonance;
 mod search;
 mod smooth;
 mod table;

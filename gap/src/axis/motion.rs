@@ -18,6 +18,10 @@ pub(super) const WIDE: f64 = 0.04;
 pub(super) const BLOCKS: usize = 32;
 /// An axis is at rest when it stays slow this long [s].
 const DWELL_S: f64 = 0.015;
+/// Rows away from slow passages, over those that move, from which on they are enough for a balance.
+const ENOUGH: f64 = 0.15;
+/// Waves that the travel must hold for their number to be searched.
+pub(super) const LEAST_WAVES: f64 = 0.7;
 /// Rows of the balance at most.
 const MOST_ROWS: usize = 12_000;
 /// Below this share of moving rows the axis is taken to stand.
@@ -164,14 +168,19 @@ impl Motion {
         // runs of slow rows are rest
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of rows")]
         let dwell = (DWELL_S / period_s).ceil() as usize;
-        // and so are the rows that smoothing reaches from there
+        // and so are the rows that smoothing reaches from there; in a shorter one it may stick, for all that the rate shows
         let reach = whole.half();
-        let mut resting = vec![false; v.len()];
-        let mut start = 0;
+        let (mut resting, mut turning) = (vec![false; v.len()], vec![false; v.len()]);
+        let mut start = 0_usize;
         for k in 0..=v.len() {
             if k == v.len() || v[k].abs() > quiet {
+                let reached = start.saturating_sub(reach)..(k + reach).min(v.len());
                 if k - start >= dwell {
-                    resting[start.saturating_sub(reach)..(k + reach).min(v.len())].fill(true);
+                    resting[reached.clone()].fill(true);
+                }
+                let passes = k > start || k > 0 && k < v.len() && v[k] * v[k - 1] < 0.0;
+                if passes {
+                    turning[reached].fill(true);
                 }
                 start = k + 1;
             }
@@ -191,7 +200,11 @@ impl Motion {
                 && log.valid[row - margin.min(*row)..(row + margin).min(v.len())].iter().all(|valid| *valid)
         };
         let last = v.len().saturating_sub(margin);
-        let rows: Vec<usize> = (margin..last).step_by(thin).filter(good).collect();
+        let mut rows: Vec<usize> = (margin..last).step_by(thin).filter(good).collect();
+        let steady: Vec<usize> = rows.iter().copied().filter(|row| !turning[*row]).collect();
+        if !stands && steady.len() as f64 >= ENOUGH * rows.len() as f64 {
+            rows = steady;
+        }
         let block = rows.iter().map(|row| row * BLOCKS / v.len()).collect();
         let floor = (model.inertia * noise_at(band_hz)).hypot(effort_noise * whole.noise_gain());
         Self {
@@ -285,7 +298,7 @@ impl Motion {
             return Vec::new();
         }
         if self.rotary {
-            let least = (0.7 * TAU / self.travel).max(1.0).ceil();
+            let least = (LEAST_WAVES * TAU / self.travel).max(1.0).ceil();
             (0..220).map(|k| least + f64::from(k)).filter(|k| *k <= 220.0).collect()
         } else {
             (3..400).map(|half| f64::from(half) * 0.5 * TAU / self.travel).collect()

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::library::{NOMINAL, Shape};
-use super::regress::Grams;
+use super::regress::{FOLDS, Grams, fold_of};
 
 /// One effect with fixed shape parameters.
 #[derive(Debug, Clone)]
@@ -41,6 +41,9 @@ const LEAST_OF_EFFORT: f64 = 1e-4;
 const LEAST_OF_FLOOR: f64 = 0.1;
 /// Its gain must exceed its own standard error over blocks by this factor.
 const LEAST_T: f64 = 2.5;
+/// A gain that is most of what was left is no chance where it is there in so many folds, however unequal the blocks.
+const MOST_OF_REST: f64 = 0.5;
+const FOLDS_WITH: usize = 6;
 /// Effects at most; many kinds of ripple count each.
 const MOST: usize = 10;
 /// What an asymmetry must be better by than an offset.
@@ -80,6 +83,15 @@ impl Slip {
         let drives = friction.iter().filter(|along| **along < 0.0).count();
         drives as f64 <= MAY_DRIVE * friction.len() as f64
     }
+}
+
+/// Sums over the blocks of each fold.
+fn folds(blocks: &[f64]) -> [f64; FOLDS] {
+    let mut sums = [0.0; FOLDS];
+    for (block, value) in blocks.iter().enumerate() {
+        sums[fold_of(block)] += value;
+    }
+    sums
 }
 
 /// A set with its errors on blocks held out.
@@ -207,7 +219,9 @@ impl Problem {
             .max(LEAST_OF_REST * rest)
             .max(LEAST_OF_EFFORT * self.effort_square)
             .max(LEAST_OF_FLOOR * self.floor_square);
-        rest > 0.0 && gain > effects * least && mean > LEAST_T * error
+        let broad =
+            || gain > MOST_OF_REST * rest && folds(&gains).iter().filter(|gain| **gain > 0.0).count() >= FOLDS_WITH;
+        rest > 0.0 && gain > effects * least && (mean > LEAST_T * error || broad())
     }
 
     /// Effects that a set stands for: its members, and base columns beyond what is known of them.

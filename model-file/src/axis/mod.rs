@@ -7,6 +7,7 @@
 //! Effort is what drives the axis, in the unit in which it is logged: force, torque or motor current. Parameters are
 //! in that unit per unit of motion, so that a log in ampere needs no torque constant.
 
+mod effects;
 mod read;
 mod unit;
 
@@ -14,6 +15,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+pub use effects::EFFECTS;
 pub use unit::{Motion, Quantity};
 
 /// A single-axis servo and its log.
@@ -42,7 +44,7 @@ pub struct AxisModel {
     pub load_direction: f64,
     /// Upper edge of the band in which the balance is made [Hz]; chosen from the data where it is not given.
     pub band_hz: Option<f64>,
-    /// Effects that cannot be, because the part is known to be good.
+    /// Effects that cannot be, because the part is known to be good: names of [`EFFECTS`].
     #[serde(default)]
     pub known_good: Vec<String>,
     /// Where the signals stand.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use super::effects::{hold, unknown};
 use super::{AxisModel, Motion, Output, Quantity, Source};
 use crate::error::{ModelFileError, Problem};
 use crate::fields::nearest;
@@ -40,10 +41,11 @@ impl AxisModel {
         if !is_axis {
             return Ok(None);
         }
-        let model = toml::from_str::<File>(text)
+        let mut model = toml::from_str::<File>(text)
             .map_err(|error| fail(error.span().map(|span| span.start), Problem::Impossible(told(error.message()))))?
             .axis;
         model.check().map_err(|(key, message)| fail(place(text, &key), Problem::Impossible(message)))?;
+        hold(&mut model);
         Ok(Some(model))
     }
 
@@ -83,6 +85,9 @@ impl AxisModel {
         }
         if ![1.0, -1.0].contains(&self.load_direction) {
             return wrong("load_direction", format!("is {}; write 1 or -1", self.load_direction));
+        }
+        if let Some(message) = unknown(&self.known_good) {
+            return wrong("known_good", message);
         }
         let columns = &self.columns;
         if columns.position.is_none() && columns.velocity.is_none() {

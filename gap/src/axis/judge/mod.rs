@@ -101,6 +101,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let floor = balance.motion.floor;
     let shrunk = shrunk("effort".to_owned(), &model.effort_unit, &before, &best.held_out, counts, floor);
     let (ranking, unknown_probability) = rank(balance, best, &fitted.times, &shrunk, model);
+    let ranking = if balance.dead_zone_is_friction { or_dead_zone(ranking) } else { ranking };
     let found = found(balance, &fitted, model, &ranking, shrunk.reduction_percent);
     let alternatives = alternatives(&ranking, &names(balance, &best.members, model), &found);
     let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
@@ -119,6 +120,24 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     };
     let alternatives = if verdict == Verdict::NoGap { Vec::new() } else { alternatives };
     Judged { verdict, found, ranking, alternatives, unknown_probability, shrunk, drawn: fitted.drawn }
+}
+
+/// Each set with friction beyond its tolerance once more with a dead zone instead: the two are one column.
+fn or_dead_zone(ranking: Vec<Ranked>) -> Vec<Ranked> {
+    let twice = |set: Ranked| {
+        let own = "friction_level";
+        if !set.effects.iter().any(|effect| effect == own) {
+            return vec![set];
+        }
+        let renamed = set.effects.iter().map(|effect| if effect == own { "dead_zone" } else { effect }.to_owned());
+        let mut other: Vec<String> = renamed.collect();
+        other.sort();
+        let probability = 0.5 * set.probability;
+        vec![Ranked { probability, ..set }, Ranked { effects: other, probability }]
+    };
+    let mut ranking: Vec<Ranked> = ranking.into_iter().flat_map(twice).collect();
+    ranking.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    ranking
 }
 
 /// Sets of a ranking that are not told apart from the one that is named: neither part of it nor more than it, and nearly as

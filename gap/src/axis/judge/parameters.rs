@@ -25,6 +25,14 @@ pub(in crate::axis) fn deviation(samples: &[Vec<f64>], place: usize) -> f64 {
     (samples.iter().map(|s| (s[place] - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt()
 }
 
+/// How well the model knows a factor that its parameters have in common: `1/sqrt(sum 1/tolerance^2)`, of those that are
+/// not zero.
+fn common_tolerance(model: &AxisModel) -> f64 {
+    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
+    let known = tolerance.iter().zip(nominal(model)).filter(|(_, parameter)| *parameter > 0.0);
+    known.map(|(tolerance, _)| f64::powi(tolerance.max(1e-6), -2)).sum::<f64>().sqrt().recip()
+}
+
 /// Parameters of an effect with their names and units.
 pub(in crate::axis) fn parameters(
     shape: &Shape,
@@ -70,7 +78,12 @@ pub(in crate::axis) fn parameters(
                 new("phase_rad", phase, deviation(&phases, 0), "rad".to_owned()),
             ]
         }
-        Shape::Scale | Shape::LoadDependence => vec![amplitude("relative", one())],
+        // of the model's own parameters, which are known to their tolerances alone
+        Shape::Scale => {
+            let known = (1.0 + own[0]) * common_tolerance(model);
+            vec![new("relative", own[0], deviation(samples, 0).hypot(known), one())]
+        }
+        Shape::LoadDependence => vec![amplitude("relative", one())],
         Shape::Lag | Shape::RateDelay => vec![amplitude("time_s", "s".to_owned())],
         Shape::Quadratic => vec![amplitude("coefficient", format!("{effort} s2/{length}2"))],
         Shape::ViscousCurve { .. } => vec![amplitude("coefficient", format!("{effort} (s/{length})^exponent"))],
@@ -84,6 +97,7 @@ pub(in crate::axis) fn parameters(
         }
         Shape::FrictionTaper => vec![amplitude("stiffness", unit(0))],
         Shape::Flexible => vec![amplitude("coefficient", unit(4))],
+        Shape::Mode { .. } => vec![amplitude("inertia", unit(2))],
         Shape::Backlash { .. } => vec![
             amplitude("inertia_unloaded", unit(2)),
             new("friction_unloaded", own[1], deviation(samples, 1), effort),
@@ -106,6 +120,7 @@ pub(in crate::axis) fn parameters(
             "rate" => (name, value, format!("{length}/s")),
             "displacement" | "width" => (name, value, length.to_owned()),
             "time_constant" => ("time_constant_s", value, "s".to_owned()),
+            "frequency_hz" => (name, value, "Hz".to_owned()),
             _ => (name, value, one()),
         };
         told.push(new(name, value, 0.0, unit));

@@ -1,0 +1,58 @@
+//! Effects that an axis may have, by name: what `known_good` may say.
+
+use super::{AxisModel, AxisTolerance};
+use crate::fields::nearest;
+
+/// Names of the effects of an axis.
+pub const EFFECTS: [&str; 31] = [
+    "inertia",
+    "viscous_friction",
+    "friction_level",
+    "torque_scale",
+    "constant_torque",
+    "torque_bias",
+    "direction_asymmetry",
+    "stribeck",
+    "presliding",
+    "quadratic_drag",
+    "viscous_curve",
+    "friction_drift",
+    "viscous_drift",
+    "bias_drift",
+    "load_dependence",
+    "position_friction",
+    "friction_taper",
+    "cable_spring",
+    "cable_hysteresis",
+    "torque_ripple",
+    "motor_ripple",
+    "dead_zone",
+    "torque_curve",
+    "motor_lag",
+    "flexible_mode",
+    "backlash",
+    "external_load",
+    "load_friction",
+    "load_gain",
+    "load_ripple",
+    "velocity_delay",
+];
+
+/// What is wrong with a name that is no effect.
+pub(super) fn unknown(known_good: &[String]) -> Option<String> {
+    let wrong = known_good.iter().find(|name| !EFFECTS.contains(&name.as_str()))?;
+    Some(format!(
+        "has `{wrong}`, which is no effect of an axis; the nearest known one is `{}`",
+        nearest(wrong, EFFECTS.into_iter())
+    ))
+}
+
+/// Holds the nominal parameters that are known to be good where the model has them.
+pub(super) fn hold(model: &mut AxisModel) {
+    let AxisTolerance { inertia, viscous, coulomb } = &mut model.tolerance;
+    for (name, tolerance) in [("inertia", inertia), ("viscous_friction", viscous), ("friction_level", coulomb)] {
+        if model.known_good.iter().any(|good| good == name) {
+            *tolerance = 0.0;
+        }
+    }
+}
