@@ -50,7 +50,7 @@ pub(crate) fn gap(args: &Args) -> Result<(), Failure> {
     {
         if !args.trust.is_empty() || args.write_model.is_some() {
             return Err(Failure::input(
-                "--trust, --write-model: not for a plain axis, whose model file has no effects",
+                "--trust, --write-model: not for a plain axis; what is known to be good there stands in its model file, `known_good` of [axis]",
             ));
         }
         return bare_axis(args, &model, &path.display().to_string());

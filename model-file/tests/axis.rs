@@ -25,6 +25,13 @@ fn closed_form_units_become_those_of_the_model() {
 }
 
 #[test]
+fn contract_a_parameter_that_is_known_to_be_good_has_no_tolerance() {
+    let known = GOOD.replace("inertia = 2e-4", "inertia = 2e-4\nknown_good = [\"viscous_friction\", \"stribeck\"]");
+    let tolerance = AxisModel::parse(&known, "axis.toml").expect("reads").expect("an axis").tolerance;
+    assert_eq!([tolerance.inertia, tolerance.viscous], [0.03, 0.0]);
+}
+
+#[test]
 fn contract_a_file_without_the_table_is_no_axis() {
     assert_eq!(AxisModel::parse("preset = \"consistent\"\n", "servo.toml").expect("reads"), None);
 }
@@ -50,6 +57,11 @@ fn contract_mistakes_name_their_place_and_what_would_be_right() {
         ("unit = \"mA\"", "unit = \"N\"", "`axis.columns.effort` has the unit \"N\"; write one of \"A\", \"mA\""),
         ("motion = \"rotary\"", "motion = \"round\"", "line 2, column 10"),
         ("inertia = 2e-4\n", "", "missing field `inertia`"),
+        (
+            "inertia = 2e-4",
+            "inertia = 2e-4\nknown_good = [\"motor_lg\"]",
+            "line 5, column 1: `axis.known_good` has `motor_lg`, which is no effect of an axis; the nearest known one is `motor_lag`",
+        ),
         ("position = { name = \"q\", unit = \"deg\" }\n", "", "neither `position` nor `velocity`"),
     ];
     for (good, bad, expected) in cases {

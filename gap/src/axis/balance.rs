@@ -3,14 +3,14 @@
 use gimbal_model_file::AxisModel;
 
 use super::judge::BEYOND;
-use super::library::{NOMINAL, Shape, rms, shapes};
+use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
 use super::regress::Grams;
 use super::resonance::modes;
 use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
+use super::tried::shapes;
+use super::waves::waves;
 
-/// Numbers of waves that are kept from the search, for each kind of ripple.
-const KEPT_WAVES: usize = 12;
 /// Rows at which friction is looked at.
 const SLIP_ROWS: usize = 400;
 /// Slip is steady where its direction is smoothed by no more than this.
@@ -164,7 +164,7 @@ impl Balance {
             let rest = rms(&residual);
             let lag = correlation(&residual);
             set_priors(&mut self.problem.grams, model, rest, &self.motion, lag);
-            self.refine(&best.members, model);
+            self.refine(&best.members);
             best = self.problem.search(best.members);
         }
         best
@@ -228,7 +228,7 @@ impl Balance {
     }
 
     /// Moves the shape parameters of the members to where the fit is best, and adds those shapes to the library.
-    fn refine(&mut self, members: &[usize], model: &AxisModel) {
+    fn refine(&mut self, members: &[usize]) {
         let mut added = false;
         for &member in members {
             let shape = self.problem.candidates[member].shape.clone();
@@ -274,7 +274,6 @@ impl Balance {
             let precision = self.problem.grams.precision.clone();
             self.problem.grams = Grams::new(&self.columns, &self.target, &self.motion.block);
             self.problem.grams.precision[..precision.len()].copy_from_slice(&precision);
-            let _ = model;
         }
     }
 }
@@ -357,67 +356,4 @@ fn set_priors(grams: &mut Grams, model: &AxisModel, rest: f64, motion: &Motion, 
         let known = 1e9 * grams.power(place).max(1e-300);
         grams.precision[place] = if deviation > 0.0 { (variance / (deviation * deviation)).min(known) } else { known };
     }
-}
-
-/// Ripples whose number of waves stands out in what the parameters leave.
-fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<Shape> {
-    let mut all = base.to_vec();
-    all.push(vec![1.0; target.len()]);
-    let grams = Grams::new(&all, target, &motion.block);
-    let fit = grams.fit(&[0, 1, 2, 3]);
-    let rest: Vec<f64> =
-        (0..target.len()).map(|row| target[row] - (0..4).map(|c| fit[c] * all[c][row]).sum::<f64>()).collect();
-    let (q, v) = (motion.pick(&motion.q), motion.pick(&motion.v));
-    let (needed, s) = (motion.pick(&motion.needed), motion.pick(&motion.s));
-    let carriers: [(&dyn Fn(usize) -> f64, &dyn Fn(f64) -> Shape, f64); 3] = [
-        (&|_| 1.0, &|wave_number| Shape::Ripple { wave_number }, f64::MAX),
-        (&|i| needed[i], &|wave_number| Shape::MotorRipple { wave_number }, f64::MAX),
-        (&|i| s[i], &|wave_number| Shape::PositionFriction { wave_number }, 24.0),
-    ];
-    let numbers = motion.wave_numbers();
-    let mut shapes = Vec::new();
-    for (kind, (carrier, shape, most)) in carriers.iter().enumerate() {
-        if motion.stands && kind > 0 {
-            continue;
-        }
-        let mut found: Vec<(f64, f64)> = {
-            use rayon::prelude::*;
-            let carried: Vec<f64> = (0..q.len()).map(carrier).collect();
-            let sigma_s = motion.period_s * motion.whole_sigma();
-            numbers
-                .par_iter()
-                .filter(|k| **k * if motion.rotary { 1.0 } else { motion.travel / std::f64::consts::TAU } <= *most)
-                .map(|&k| {
-                    let (mut re, mut im, mut power) = (0.0, 0.0, 1e-300);
-                    for i in 0..q.len() {
-                        // what the smoothing leaves of a wave at this rate
-                        let blur = 0.5 * (k * v[i] * sigma_s).powi(2);
-                        if blur > 6.0 {
-                            continue;
-                        }
-                        let wave = carried[i] * (-blur).exp();
-                        let (sin, cos) = (k * q[i]).sin_cos();
-                        re += wave * rest[i] * cos;
-                        im += wave * rest[i] * sin;
-                        power += wave * wave;
-                    }
-                    ((re * re + im * im) / power, k)
-                })
-                .collect()
-        };
-        // peaks alone: neighbours of a line are its skirt
-        let peaks: Vec<(f64, f64)> = (0..found.len())
-            .filter(|&i| {
-                motion.rotary
-                    || (i == 0 || found[i - 1].0 <= found[i].0)
-                        && (i + 1 == found.len() || found[i + 1].0 <= found[i].0)
-            })
-            .map(|i| found[i])
-            .collect();
-        found = peaks;
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let kept = if kind == 0 { KEPT_WAVES } else { KEPT_WAVES / 2 };
-        shapes.extend(found.iter().take(kept).map(|(_, k)| shape(*k)));
-    }
-    shapes
 }

@@ -8,6 +8,7 @@ use super::balance::{nominal, plain};
 use super::motion::{Motion, MotionFrom, NARROW, step};
 use super::smooth::Kernel;
 use super::table::AxisLog;
+use super::units::{Unit, looks_like, other_unit};
 
 /// A column that is not what its name says.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,13 +29,6 @@ pub(super) struct Checked {
     pub(super) faults: Vec<ColumnFault>,
     /// What is in another unit than the model file says.
     pub(super) unit: Option<Unit>,
-}
-
-/// What is in another unit, and its values over what they should be.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Unit {
-    Motion(f64),
-    Time(f64),
 }
 
 /// Two columns agree within this.
@@ -82,39 +76,6 @@ fn follows(a: &[f64], b: &[f64], valid: &[bool]) -> Follows {
     Follows { slope: ab / aa, correlation: of(best), late_rows: f64::from(best) + vertex.clamp(-0.5, 0.5) }
 }
 
-/// Factors of units that are taken for one another, and how far one may be off them (its logarithm).
-const UNITS: [f64; 8] = [1e3, 1e-3, TAU, 1.0 / TAU, 180.0 / PI, PI / 180.0, 100.0, 0.01];
-const ALIKE: f64 = 0.35;
-
-/// What a factor looks like.
-fn looks_like(factor: f64) -> String {
-    let size = factor.abs();
-    let known = [
-        (TAU, "2 pi: turns against radians"),
-        (1.0 / TAU, "1/(2 pi): radians against turns"),
-        (180.0 / PI, "180/pi: degrees against radians"),
-        (PI / 180.0, "pi/180: radians against degrees"),
-        (60.0 / TAU, "60/(2 pi): rpm against rad/s"),
-        (TAU / 60.0, "2 pi/60: rad/s against rpm"),
-        (1e3, "1000: a prefix"),
-        (1e-3, "1/1000: a prefix"),
-    ];
-    let sign = if factor < 0.0 { "the opposite sign, and " } else { "" };
-    if (size - 1.0).abs() < SAME {
-        return "the opposite sign".to_owned();
-    }
-    if let Some((_, name)) = known.iter().find(|(value, _)| (size / value - 1.0).abs() < SAME) {
-        return format!("{sign}{name}");
-    }
-    for (value, form) in [(size, ""), (1.0 / size, "1/")] {
-        let whole = value.round();
-        if (2.0..200.0).contains(&whole) && (value / whole - 1.0).abs() < 0.01 {
-            return format!("{sign}{form}{whole}: a ratio of gears, poles or periods");
-        }
-    }
-    format!("{sign}no known ratio")
-}
-
 /// Smoothing that leaves the motion and little of the noise: that of the balance, 3 rows at least.
 fn in_band(log: &AxisLog, model: &AxisModel) -> f64 {
     let widest = [MotionFrom::Position, MotionFrom::Velocity].map(|from| Motion::new(log, model, from, 1.0, NARROW));
@@ -158,22 +119,6 @@ pub(super) fn advance(values: &mut [f64], rows: f64) {
         let low = place.floor() as usize;
         let share = place - low as f64;
         *value = old[low] + share * (old[(low + 1).min(last)] - old[low]);
-    }
-}
-
-/// Takes position and rate, or time, in the unit that they are in, where that is not what the model file says.
-pub(super) fn in_units(log: &mut AxisLog, checked: &Checked) {
-    match checked.unit {
-        Some(Unit::Time(factor)) => {
-            log.period_s /= factor;
-            log.first_s /= factor;
-        }
-        Some(Unit::Motion(factor)) => {
-            let AxisLog { position, velocity, position_reference, velocity_reference, .. } = log;
-            let columns = [position, velocity, position_reference, velocity_reference];
-            columns.into_iter().flatten().flatten().for_each(|value| *value /= factor);
-        }
-        None => {}
     }
 }
 
@@ -263,7 +208,14 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
     }
     checked.from = Some(from);
     sign(log, model, &mut checked);
-    units(log, model, &mut checked);
+    if let Some(other) = other_unit(log, model, checked.from, checked.effort_sign) {
+        checked.words.push(other.words);
+        checked.faults.push(ColumnFault {
+            effect: other.effect,
+            parameters: vec![("factor", other.unit.factor(), 0.0, "1".to_owned())],
+        });
+        checked.unit = Some(other.unit);
+    }
     others(log, model, &mut checked);
     checked
 }
@@ -350,37 +302,6 @@ fn sign(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
         "plain regression: inertia {:.4e}, viscous {:.4e}, Coulomb {:.4e}, constant {:.3e} (model: {:.4e}, {:.4e}, {:.4e}, 0)",
         found[0], found[1], found[2], found[3], model.inertia, model.viscous, model.coulomb
     ));
-}
-
-/// Position or time in another unit than the model file says: inertia and viscous friction are off as their powers of it
-/// have it, and Coulomb friction is not.
-///
-/// ```text
-/// position times k: J / k, B / k        time times k: J k^2, B k
-/// ```
-fn units(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
-    let Some(from) = checked.from else { return };
-    let (found, _) = plain(&Motion::new(log, model, from, checked.effort_sign, NARROW));
-    let [inertia, viscous, coulomb] = std::array::from_fn(|place| found[place] / nominal(model)[place]);
-    let off = |ratio: f64, by: f64| (ratio.abs() / by).ln().abs() > ALIKE;
-    if !(inertia > 0.0 && viscous > 0.0) || !off(inertia, 1.0) || off(coulomb, 1.0) {
-        return;
-    }
-    let unit = |factor: f64| UNITS.into_iter().find(|unit| !off(factor, *unit));
-    let name = if from == MotionFrom::Position { "position_scale" } else { "velocity_scale" };
-    let (position, time) = (unit(1.0 / inertia), unit(inertia.sqrt()));
-    let (effect, factor, of) = match (position, time) {
-        (Some(factor), _) if !off(viscous, inertia) => (name, factor, "position and rate"),
-        (_, Some(factor)) if log.velocity.is_none() && !off(viscous, inertia.sqrt()) => ("time_scale", factor, "time"),
-        _ => return,
-    };
-    checked.unit = Some(if effect == "time_scale" { Unit::Time(factor) } else { Unit::Motion(factor) });
-    checked.words.push(format!(
-        "inertia is {inertia:.3e} and viscous friction {viscous:.3e} times the model's, Coulomb friction is not: {of} in \
-         another unit than [axis.columns] says, {factor:.4e} of it ({}); taken in that unit",
-        looks_like(factor)
-    ));
-    checked.faults.push(ColumnFault { effect, parameters: vec![("factor", factor, 0.0, "1".to_owned())] });
 }
 
 /// Command, limits, stuck channels, references.

@@ -79,7 +79,9 @@ const NOT_CARRIED: f64 = 0.6;
 fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Motion) {
     columns::unwrap(&mut log);
     let checked = columns::check(&log, model);
-    columns::in_units(&mut log, &checked);
+    if let Some(unit) = checked.unit {
+        unit.undo(&mut log);
+    }
     let from = checked.from.unwrap_or(MotionFrom::Position);
     let late = checked.faults.iter().find(|fault| fault.effect == "velocity_delay").map(|fault| fault.parameters[0].1);
     let scaled = checked.faults.iter().any(|fault| fault.effect.ends_with("_scale"));

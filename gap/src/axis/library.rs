@@ -7,9 +7,8 @@
 //! Nothing here is a function of the logged effort: what hangs on the effort (`dead_zone`, `torque_curve`, lag, delay)
 //! hangs on the effort that the motion needs, so that no column can be the regressand in disguise.
 
-use std::f64::consts::TAU;
-
-use super::motion::{LEAST_WAVES, Motion};
+use super::memory::{dahl_state, play_state};
+use super::motion::Motion;
 use super::resonance;
 
 /// What an effect looks like; numbers are its shape parameters.
@@ -308,103 +307,4 @@ impl Shape {
 /// Root mean square.
 pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
-}
-
-/// Dahl's state over its limit: dz = (1 - z sgn(dq))/displacement dq, exact between rows.
-pub(super) fn dahl_state(q: &[f64], displacement: f64) -> Vec<f64> {
-    let mut z = 0.0_f64;
-    let mut last = q[0];
-    q.iter()
-        .map(|&now| {
-            let step = now - last;
-            last = now;
-            let towards = step.signum();
-            if step != 0.0 {
-                z = towards - (towards - z) * (-step.abs() / displacement).exp();
-            }
-            z
-        })
-        .collect()
-}
-
-/// Play over half its width: the state follows the position, clamped to +-1.
-pub(super) fn play_state(q: &[f64], width: f64) -> Vec<f64> {
-    let mut state = 0.0_f64;
-    let mut last = q[0];
-    q.iter()
-        .map(|&now| {
-            state = (state + 2.0 * (now - last) / width).clamp(-1.0, 1.0);
-            last = now;
-            state
-        })
-        .collect()
-}
-
-/// Travel from which on one wave a turn is tried, however few of them the others must have.
-const GRAVITY_SHOWS_RAD: f64 = 1.5;
-
-/// Everything that is tried without a search for numbers of waves.
-pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
-    let mut shapes = vec![
-        Shape::Inertia,
-        Shape::Viscous,
-        Shape::Coulomb,
-        Shape::Constant,
-        Shape::Asymmetry,
-        Shape::Quadratic,
-        Shape::LoadDependence,
-        Shape::FrictionTaper,
-        Shape::Spring,
-        Shape::DeadZone,
-        Shape::TorqueCurve,
-        Shape::Lag,
-        Shape::Flexible,
-    ];
-    for share in [0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32] {
-        let rate = share * m.fastest;
-        if rate > m.quiet {
-            shapes.extend([1.0, 2.0].map(|exponent| Shape::Stribeck { rate, exponent }));
-        }
-    }
-    for exponent in [0.5, 0.667] {
-        shapes.push(Shape::ViscousCurve { exponent });
-    }
-    for share in [3e-4, 1e-3, 3e-3, 1e-2, 3e-2] {
-        let length = share * m.travel;
-        if length > 4.0 * m.position_noise {
-            shapes.push(Shape::Presliding { displacement: length });
-            shapes.push(Shape::Backlash { width: length });
-        }
-    }
-    // gravity on an arm has one wave a turn; on a shorter way it is a spring
-    if m.rotary && (GRAVITY_SHOWS_RAD..LEAST_WAVES * TAU).contains(&m.travel) {
-        shapes.push(Shape::Ripple { wave_number: 1.0 });
-    }
-    for share in [0.03, 0.055, 0.1, 0.18, 0.3] {
-        shapes.push(Shape::Hysteresis { width: share * m.travel });
-    }
-    for share in [0.05, 0.15, 0.4, 1.0] {
-        let time_s = share * m.length_s();
-        shapes.extend([Shape::FrictionDrift { time_s }, Shape::ViscousDrift { time_s }, Shape::BiasDrift { time_s }]);
-    }
-    for channel in 0..m.auxiliary.len() {
-        shapes.extend([Shape::Load { channel }, Shape::LoadFriction { channel }, Shape::LoadGain { channel }]);
-    }
-    if m.stands {
-        // without slip nothing that hangs on rate or acceleration can be told
-        shapes.retain(|shape| {
-            matches!(
-                shape,
-                Shape::Coulomb
-                    | Shape::Constant
-                    | Shape::Spring
-                    | Shape::Hysteresis { .. }
-                    | Shape::BiasDrift { .. }
-                    | Shape::Presliding { .. }
-                    | Shape::FrictionTaper
-                    | Shape::Load { .. }
-            )
-        });
-    }
-    shapes
 }

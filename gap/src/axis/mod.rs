@@ -9,6 +9,7 @@ mod experiment;
 mod judge;
 mod law;
 mod library;
+mod memory;
 mod motion;
 mod place;
 mod regress;
@@ -17,6 +18,9 @@ mod resonance;
 mod search;
 mod smooth;
 mod table;
+mod tried;
+mod units;
+mod waves;
 
 pub use columns::ColumnFault;
 pub use diagnose::{AxisDiagnosis, diagnose};

@@ -188,7 +188,7 @@ impl Motion {
         let at_rest = resting.iter().filter(|rest| **rest).count() as f64 / v.len() as f64;
         let stands = 1.0 - at_rest < STANDS;
         let s = if stands {
-            super::library::play_state(&q, (8.0 * position_noise).max(2e-3 * (high - low)))
+            super::memory::play_state(&q, (8.0 * position_noise).max(2e-3 * (high - low)))
         } else {
             v.iter().map(|v| (v / quiet).clamp(-1.0, 1.0)).collect()
         };

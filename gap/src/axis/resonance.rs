@@ -18,8 +18,8 @@ use super::motion::Motion;
 /// Frequencies that are tried: from so many periods in the log, in such steps, up to the band's edge.
 const PERIODS: f64 = 10.0;
 const STEP: f64 = 1.06;
-/// Dampings that are tried.
-const DAMPINGS: [f64; 3] = [0.02, 0.06, 0.15];
+/// Dampings that are tried: with more of it, a mode takes what friction does about a reversal.
+const DAMPINGS: [f64; 3] = [0.01, 0.03, 0.08];
 /// Modes that are offered, and how far apart they are.
 const OFFERED: usize = 3;
 const APART: f64 = 1.2;

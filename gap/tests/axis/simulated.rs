@@ -106,6 +106,57 @@ fn cross_wrong_columns_are_told_in_words_and_do_not_become_effects() {
 }
 
 #[test]
+fn cross_short_sticks_at_reversals_leave_nothing() {
+    // friction there is whatever the effort is: with those rows in the balance more than twice the floor is left
+    for seed in 0..3 {
+        let shrunk = &diagnosed(&Truth::nominal(), Path::Sines, seed).shrunk[0];
+        assert!(shrunk.after < shrunk.noise_floor, "{} of {}", shrunk.after, shrunk.noise_floor);
+    }
+}
+
+#[test]
+fn cross_a_wrong_unit_is_told_and_undone() {
+    let position_alone = MODEL.replace("velocity = { name = \"v\", unit = \"m/s\" }\n", "");
+    let as_is = log(&Truth::nominal(), Path::Sines, 24.0, 5);
+    let cases = [
+        ("position_scale", 1e-3, "unit = \"m\"", "unit = \"mm\""),
+        ("time_scale", 1e-3, "unit = \"s\"", "unit = \"ms\""),
+    ];
+    for (effect, size, unit, wrong) in cases {
+        let model =
+            AxisModel::parse(&position_alone.replacen(unit, wrong, 1), "axis.toml").expect("reads").expect("an axis");
+        let read = AxisLog::read(as_is.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
+        let diagnosis = diagnose(read, &model, Vec::new());
+        assert_eq!(names(&diagnosis), [effect], "{}", text(&diagnosis));
+        assert!((value(&diagnosis, effect) / size - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn cross_a_law_with_gains_far_off_is_told_by_its_gains() {
+    let law = "[axis.controller]\noutput = \"effort\"\nposition_gain = 46800.0\nvelocity_gain = 1152.0\n";
+    let columns = "position_reference = { name = \"r\", unit = \"m\" }\n[axis.columns.auxiliary]\n";
+    let model = MODEL.replace("[axis.columns.auxiliary]\n", columns) + law;
+    let model = AxisModel::parse(&model, "axis.toml").expect("reads").expect("an axis");
+    let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5));
+    let read = AxisLog::read(logged.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
+    let diagnosis = diagnose(read, &model, Vec::new());
+    // the loop of the simulator has 39000 and 960
+    assert!((value(&diagnosis, "loop_gain") / 39_000.0 - 1.0).abs() < 0.01, "{}", text(&diagnosis));
+}
+
+/// The reference that the simulator's law had, from what it gave: `command = 39000 (reference - position) - 960 rate`.
+fn with_reference(logged: &str) -> String {
+    let mut out = String::from("t,x,v,f,code,r\n");
+    for line in logged.lines().skip(1) {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        let [_, position, rate, command, _] = cells[..] else { panic!("five cells: {line}") };
+        out.push_str(&format!("{line},{:.9}\n", position + (command + 960.0 * rate) / 39_000.0));
+    }
+    out
+}
+
+#[test]
 fn contract_the_verdict_hangs_on_neither_order_nor_origin_nor_spare_columns() {
     let truth = Truth { static_excess: 12.0, constant: 5.0, ripple: vec![(400.0, 6.0, 0.4)], ..Truth::nominal() };
     let text = log(&truth, Path::Sines, 24.0, 3);

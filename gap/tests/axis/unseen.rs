@@ -3,7 +3,8 @@
 #[path = "../../examples/axes/mod.rs"]
 mod axes;
 
-use axes::draw::{Group, group};
+use axes::draw::{Group, axis, group};
+use axes::effect::Kind;
 use axes::score::{Outcome, Scored, scored};
 use rayon::prelude::*;
 
@@ -32,6 +33,15 @@ fn cross_effects_of_axes_of_any_origin_are_named_or_in_a_class() {
     let named = all.iter().filter(|one| matches!(one.outcome, Outcome::Right | Outcome::Class)).count();
     // four in five on the seeds that it was developed on
     assert!(named * 10 >= all.len() * 7, "{}", told(&all));
+}
+
+#[test]
+fn cross_masses_on_springs_are_named() {
+    let flexible = |seed: &u64| group(*seed) == Group::One && axis(*seed, 0).terms[0].kind == Kind::Flexible;
+    let seeds: Vec<u64> = (0..4000).filter(flexible).take(6).collect();
+    let all: Vec<Scored> = seeds.into_par_iter().filter_map(scored).collect();
+    let named = all.iter().filter(|one| one.outcome == Outcome::Right).count();
+    assert!(all.len() >= 5 && named * 4 >= all.len() * 3, "{}", told(&all));
 }
 
 #[test]
