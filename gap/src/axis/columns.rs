@@ -31,8 +31,31 @@ pub(super) struct Checked {
     pub(super) unit: Option<Unit>,
 }
 
+impl Checked {
+    /// A log whose columns are what their names say; its time is taken for right.
+    pub(super) fn mended(&self, log: &AxisLog) -> AxisLog {
+        let mut log = log.clone();
+        let by = |column: &mut Option<Vec<f64>>, factor: f64| {
+            column.iter_mut().flatten().for_each(|value| *value /= factor);
+        };
+        for fault in &self.faults {
+            let value = fault.parameters[0].1;
+            match fault.effect {
+                "position_scale" => by(&mut log.position, value),
+                "velocity_scale" => by(&mut log.velocity, value),
+                "velocity_unrelated" => log.velocity = None,
+                "torque_sign" => log.effort.iter_mut().for_each(|effort| *effort *= value),
+                _ => {}
+            }
+        }
+        log
+    }
+}
+
 /// Two columns agree within this.
 const SAME: f64 = 0.02;
+/// How much nearer to the model another time must bring its parameters than another position or rate (a logarithm).
+const OTHER_TIME: f64 = 0.1;
 /// Correlation below which two columns have nothing to do with each other.
 const UNRELATED: f64 = 0.7;
 /// Rows by which the rate may be late: half a row belongs to any difference of two.
@@ -49,6 +72,15 @@ struct Follows {
     slope: f64,
     correlation: f64,
     late_rows: f64,
+}
+
+impl Follows {
+    /// Whether the two are of one scale: noise of `a` makes the slope of `b` on `a` too small, noise of `b` that of `a`
+    /// on `b`, and the truth is in between.
+    fn is_of_one_scale(&self) -> bool {
+        let other = self.slope / self.correlation.powi(2).max(1e-6);
+        self.slope.min(other) < 1.0 + SAME && self.slope.max(other) > 1.0 - SAME
+    }
 }
 
 fn follows(a: &[f64], b: &[f64], valid: &[bool]) -> Follows {
@@ -186,10 +218,10 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
                 checked.words.push(format!("{velocity_name} is below its own steps: the axis hardly moves"));
             }
         } else {
-            if (both.slope - 1.0).abs() > SAME {
-                from = scale(log, model, both.slope, &mut checked, (&position_name, &velocity_name));
-            } else {
+            if both.is_of_one_scale() {
                 from = finer(log, model);
+            } else {
+                from = scale(log, model, both.slope, &mut checked, (&position_name, &velocity_name));
             }
             if both.late_rows - SURE * lateness_error(&rate, &logged, &both, log) > LATE {
                 let late_s = both.late_rows * log.period_s;
@@ -208,7 +240,8 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
     }
     checked.from = Some(from);
     sign(log, model, &mut checked);
-    if let Some(other) = other_unit(log, model, checked.from, checked.effort_sign) {
+    let other = other_unit(log, model, checked.from, checked.effort_sign);
+    if let Some(other) = other.filter(|_| checked.unit.is_none()) {
         checked.words.push(other.words);
         checked.faults.push(ColumnFault {
             effect: other.effect,
@@ -234,7 +267,8 @@ fn finer(log: &AxisLog, model: &AxisModel) -> MotionFrom {
     }
 }
 
-/// Position and velocity differ by a factor: the nominal parameters tell which of them is right.
+/// Position and velocity differ by a factor: the nominal parameters tell whether one of them is wrong, or the time that
+/// turns one into the other.
 fn scale(
     log: &AxisLog,
     model: &AxisModel,
@@ -242,7 +276,7 @@ fn scale(
     checked: &mut Checked,
     (position_name, velocity_name): (&str, &str),
 ) -> MotionFrom {
-    let distance = |from| {
+    let distance = |log: &AxisLog, from| {
         let (found, _) = plain(&Motion::new(log, model, from, 1.0, NARROW));
         let away = |place: usize| {
             let ratio = found[place].abs() / nominal(model)[place].max(1e-300);
@@ -250,17 +284,33 @@ fn scale(
         };
         away(0) + away(1)
     };
-    let (by_position, by_velocity) = (distance(MotionFrom::Position), distance(MotionFrom::Velocity));
+    let by_position = distance(log, MotionFrom::Position);
+    let by_velocity = distance(log, MotionFrom::Velocity);
+    let time = Unit::Time(slope);
+    let by_time = if slope > 0.0 {
+        let mut other = log.clone();
+        time.undo(&mut other);
+        distance(&other, MotionFrom::Position)
+    } else {
+        f64::MAX
+    };
     let looks = looks_like(slope);
-    let (right, wrong, effect, value) = if by_velocity < by_position {
+    let (right, wrong, effect, value) = if by_time + OTHER_TIME < by_position.min(by_velocity) {
+        checked.unit = Some(time);
+        (MotionFrom::Position, "the time column", "time_scale", slope)
+    } else if by_velocity < by_position {
         (MotionFrom::Velocity, position_name, "position_scale", 1.0 / slope)
     } else {
         (MotionFrom::Position, velocity_name, "velocity_scale", slope)
     };
+    let nearer = match (effect, right) {
+        ("time_scale", _) => "both",
+        (_, MotionFrom::Velocity) => velocity_name,
+        _ => position_name,
+    };
     checked.words.push(format!(
-        "{velocity_name} and {position_name} differ by {slope:.4} ({looks}); inertia and viscous friction are nearer to \
-         the model's with {}: {wrong} is {value:.4} of what it should be (or the time column, if both are right)",
-        if right == MotionFrom::Velocity { velocity_name } else { position_name },
+        "{velocity_name} and {position_name} differ by {slope:.4} ({looks}); inertia and viscous friction are nearest to \
+         the model's with {nearer}: {wrong} is {value:.4} of what it should be",
     ));
     checked
         .faults

@@ -133,7 +133,8 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
         .collect();
     let motion = &balance.motion;
     let after = balance.residual(&best.members);
-    let law = super::law::law(&log, model, &balance.motion);
+    let law = super::law::law_of(&log, &checked, model, &balance.motion);
+    judged.doubt_law(law.left);
     let contribution: Vec<f64> = balance.target.iter().zip(&after).map(|(before, after)| before - after).collect();
     let mut found = judged.found;
     let mut verdict = judged.verdict;

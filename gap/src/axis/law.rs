@@ -10,6 +10,7 @@
 use gimbal_model_file::AxisModel;
 use gimbal_model_file::axis::{Controller, Output};
 
+use super::columns::Checked;
 use super::judge::{Found, Parameter, Shrunk, deviation, parameters, shrunk};
 use super::library::{Shape, rms};
 use super::motion::Motion;
@@ -22,6 +23,8 @@ use super::table::AxisLog;
 pub(super) struct Law {
     pub(super) found: Vec<Found>,
     pub(super) shrunk: Option<Shrunk>,
+    /// What it leaves with all that is named, over the output.
+    pub(super) left: f64,
     pub(super) words: Vec<String>,
 }
 
@@ -102,9 +105,19 @@ fn waves(m: &Motion, channel: usize, rest: &[f64]) -> Vec<Shape> {
         .collect()
 }
 
+/// Holds the law against the log, as it is and with its columns mended: the loop may have the one or the other.
+pub(super) fn law_of(log: &AxisLog, checked: &Checked, model: &AxisModel, motion: &Motion) -> Law {
+    let as_it_is = law(log, model, motion);
+    if checked.faults.is_empty() {
+        return as_it_is;
+    }
+    let mended = law(&checked.mended(log), model, motion);
+    if mended.shrunk.is_some() && mended.left < as_it_is.left { mended } else { as_it_is }
+}
+
 /// Holds the law against the log.
 #[allow(clippy::too_many_lines, reason = "one chain from the law to its words")]
-pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
+fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     let Some(controller) = &model.controller else { return Law::default() };
     if motion.stands {
         return Law::default();
@@ -147,8 +160,8 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         columns.extend(shape.on_grid(&m));
         candidates.push(Candidate { shape, columns: (start..columns.len()).collect() });
     }
-    // a late rate, where the loop makes it itself, and a late output
-    if log.velocity.is_none() && controller.velocity_gain != 0.0 {
+    // a rate that the loop has later than the log
+    if controller.velocity_gain != 0.0 {
         let late: Vec<f64> = m.smoothed(&m.a).iter().map(|a| controller.velocity_gain * a).collect();
         candidates.push(Candidate { shape: Shape::RateDelay, columns: vec![columns.len()] });
         columns.push(late);
@@ -273,6 +286,7 @@ pub(super) fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
             shows_in: "control law",
         });
     }
+    law.left = shrunk.after / rms(&given).max(1e-300);
     law.shrunk = Some(shrunk);
     law
 }

@@ -23,6 +23,15 @@ impl Record {
         self.part(from..self.rows(), bearing, "no prediction gets away from the beginning", "past it")
     }
 
+    /// What is so many rows away from both ends; none where the stop was reached, or the rest is too short.
+    pub(super) fn between_ends(&self, rows: usize, bearing: &bearing::Config) -> Option<Self> {
+        if self.away_from_stop.is_some() {
+            return None;
+        }
+        let why = "no filter takes the noise out of the rate at the ends";
+        self.part(rows..self.rows().saturating_sub(rows), bearing, why, "between them")
+    }
+
     fn part(&self, rows: Range<usize>, bearing: &bearing::Config, why: &str, which: &str) -> Option<Self> {
         let period_s = self.inputs.period_s;
         let [from_s, to_s] = [rows.start, rows.end].map(|row| row as f64 * period_s);

@@ -3,6 +3,7 @@
 use std::path::Path as File;
 
 use gimbal_gap::axis::{AxisDiagnosis, AxisLog, diagnose, json, text};
+use gimbal_gap::judge::Verdict;
 use gimbal_model_file::AxisModel;
 
 use crate::simulator::{MODEL, Path, Truth, log};
@@ -119,17 +120,32 @@ fn cross_a_wrong_unit_is_told_and_undone() {
     let position_alone = MODEL.replace("velocity = { name = \"v\", unit = \"m/s\" }\n", "");
     let as_is = log(&Truth::nominal(), Path::Sines, 24.0, 5);
     let cases = [
-        ("position_scale", 1e-3, "unit = \"m\"", "unit = \"mm\""),
-        ("time_scale", 1e-3, "unit = \"s\"", "unit = \"ms\""),
+        (position_alone.as_str(), "position_scale", "unit = \"m\"", "unit = \"mm\""),
+        (&position_alone, "time_scale", "unit = \"s\"", "unit = \"ms\""),
+        (MODEL, "time_scale", "unit = \"s\"", "unit = \"ms\""),
     ];
-    for (effect, size, unit, wrong) in cases {
-        let model =
-            AxisModel::parse(&position_alone.replacen(unit, wrong, 1), "axis.toml").expect("reads").expect("an axis");
+    for (model, effect, unit, wrong) in cases {
+        let model = AxisModel::parse(&model.replacen(unit, wrong, 1), "axis.toml").expect("reads").expect("an axis");
         let read = AxisLog::read(as_is.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
         let diagnosis = diagnose(read, &model, Vec::new());
         assert_eq!(names(&diagnosis), [effect], "{}", text(&diagnosis));
-        assert!((value(&diagnosis, effect) / size - 1.0).abs() < 1e-9);
+        assert!((value(&diagnosis, effect) / 1e-3 - 1.0).abs() < 0.01, "{}", text(&diagnosis));
     }
+}
+
+#[test]
+fn cross_a_coarse_encoder_is_no_wrong_scale() {
+    // its steps are 0.2 m/s from row to row, ten times what the axis moves in a row
+    let step = 2e-4;
+    let mut coarse = String::from("t,x,v,f,code\n");
+    for line in log(&Truth::nominal(), Path::Sines, 24.0, 5).lines().skip(1) {
+        let mut cells: Vec<String> = line.split(',').map(String::from).collect();
+        let position: f64 = cells[1].parse().expect("a number");
+        cells[1] = format!("{:.9}", step * (position / step).round());
+        coarse.push_str(&(cells.join(",") + "\n"));
+    }
+    let diagnosis = diagnose(read(&coarse), &model(), Vec::new());
+    assert!(!names(&diagnosis).iter().any(|name| name.ends_with("_scale")), "{}", text(&diagnosis));
 }
 
 #[test]
@@ -138,20 +154,39 @@ fn cross_a_law_with_gains_far_off_is_told_by_its_gains() {
     let columns = "position_reference = { name = \"r\", unit = \"m\" }\n[axis.columns.auxiliary]\n";
     let model = MODEL.replace("[axis.columns.auxiliary]\n", columns) + law;
     let model = AxisModel::parse(&model, "axis.toml").expect("reads").expect("an axis");
-    let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5));
+    let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5), |_| 0.0);
     let read = AxisLog::read(logged.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
     let diagnosis = diagnose(read, &model, Vec::new());
     // the loop of the simulator has 39000 and 960
     assert!((value(&diagnosis, "loop_gain") / 39_000.0 - 1.0).abs() < 0.01, "{}", text(&diagnosis));
 }
 
-/// The reference that the simulator's law had, from what it gave: `command = 39000 (reference - position) - 960 rate`.
-fn with_reference(logged: &str) -> String {
+#[test]
+fn cross_a_law_that_is_not_the_loops_is_doubted() {
+    let law = "[axis.controller]\noutput = \"effort\"\nposition_gain = 39000.0\nvelocity_gain = 960.0\n";
+    let columns = "position_reference = { name = \"r\", unit = \"m\" }\n[axis.columns.auxiliary]\n";
+    let model = MODEL.replace("[axis.columns.auxiliary]\n", columns) + law;
+    let model = AxisModel::parse(&model, "axis.toml").expect("reads").expect("an axis");
+    let diagnosed = |shaken: &dyn Fn(f64) -> f64| {
+        let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5), shaken);
+        let read = AxisLog::read(logged.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
+        diagnose(read, &model, Vec::new())
+    };
+    assert_eq!(diagnosed(&|_| 0.0).verdict, Verdict::NoGap);
+    // a thing of its own kind in the loop: a dither of 19.3 Hz that the law does not have
+    let dithered = diagnosed(&|time_s| 4e-4 * (std::f64::consts::TAU * 19.3 * time_s).sin());
+    assert_eq!(dithered.verdict, Verdict::Unexplained, "{}", text(&dithered));
+    assert!(dithered.unknown_probability > 0.5);
+}
+
+/// The reference that the simulator's law had, from what it gave: `command = 39000 (reference - position) - 960 rate`;
+/// and what is added to it.
+fn with_reference(logged: &str, added: impl Fn(f64) -> f64) -> String {
     let mut out = String::from("t,x,v,f,code,r\n");
     for line in logged.lines().skip(1) {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-        let [_, position, rate, command, _] = cells[..] else { panic!("five cells: {line}") };
-        out.push_str(&format!("{line},{:.9}\n", position + (command + 960.0 * rate) / 39_000.0));
+        let [time, position, rate, command, _] = cells[..] else { panic!("five cells: {line}") };
+        out.push_str(&format!("{line},{:.9}\n", position + (command + 960.0 * rate) / 39_000.0 + added(time)));
     }
     out
 }

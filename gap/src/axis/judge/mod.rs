@@ -25,6 +25,8 @@ use crate::judge::Verdict;
 const LEFT: f64 = 0.03;
 /// A fit that leaves more than this of a log that it did not see explains a part.
 const CARRIED: f64 = 0.2;
+/// Share of the controller's output that a control law may leave.
+const LAW_LEFT: f64 = 0.05;
 /// From this probability of something unknown on nothing is explained.
 const UNEXPLAINED: f64 = 0.6;
 /// Share of the gap that is a trifle.
@@ -74,6 +76,29 @@ pub(super) struct Judged {
 }
 
 impl Judged {
+    /// A control law that leaves a notable part of the output is not the loop's: something is there that is not named.
+    pub(super) fn doubt_law(&mut self, left: f64) {
+        // what the balance has named may be all there is in it
+        let unknown = if self.verdict == Verdict::NoGap { doubt(1.0, 0) } else { UNEXPLAINED };
+        if left < LAW_LEFT || unknown <= self.unknown_probability {
+            return;
+        }
+        self.doubted(unknown);
+        self.verdict = match self.verdict {
+            Verdict::NoGap => Verdict::Unexplained,
+            Verdict::Explained | Verdict::CannotTell => Verdict::PartlyExplained,
+            other => other,
+        };
+    }
+
+    /// Something unknown is so probable: all that is known is that much less.
+    fn doubted(&mut self, unknown: f64) {
+        let kept = (1.0 - unknown) / (1.0 - self.unknown_probability).max(1e-9);
+        self.unknown_probability = unknown;
+        self.found.iter_mut().for_each(|found| found.probability *= kept);
+        self.ranking.iter_mut().chain(&mut self.alternatives).for_each(|set| set.probability *= kept);
+    }
+
     /// Takes back what does not carry over: what the fit leaves of a log that it did not see is no less unknown than what
     /// it leaves of its own.
     pub(super) fn carried(&mut self, left: f64) {
@@ -81,10 +106,7 @@ impl Judged {
         if self.verdict == Verdict::NoGap || unknown <= self.unknown_probability {
             return;
         }
-        let kept = (1.0 - unknown) / (1.0 - self.unknown_probability).max(1e-9);
-        self.unknown_probability = unknown;
-        self.found.iter_mut().for_each(|found| found.probability *= kept);
-        self.ranking.iter_mut().chain(&mut self.alternatives).for_each(|set| set.probability *= kept);
+        self.doubted(unknown);
         if unknown > UNEXPLAINED {
             self.verdict = Verdict::Unexplained;
         } else if matches!(self.verdict, Verdict::Explained | Verdict::CannotTell) && left > CARRIED {
@@ -119,7 +141,12 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
         Verdict::CannotTell
     };
     let alternatives = if verdict == Verdict::NoGap { Vec::new() } else { alternatives };
-    Judged { verdict, found, ranking, alternatives, unknown_probability, shrunk, drawn: fitted.drawn }
+    let nothing_named = found.is_empty();
+    let mut judged = Judged { verdict, found, ranking, alternatives, unknown_probability, shrunk, drawn: fitted.drawn };
+    if verdict == Verdict::Unexplained && nothing_named {
+        judged.doubted(doubt(left / there, 0).max(unknown_probability));
+    }
+    judged
 }
 
 /// Each set with friction beyond its tolerance once more with a dead zone instead: the two are one column.
