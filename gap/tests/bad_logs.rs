@@ -117,6 +117,7 @@ fn contract_what_is_wrong_with_the_data_is_named() {
         ("swapped_xz", good.swapped(AccelX, AccelZ), "swapped"),
         ("swapped_yz", good.swapped(AccelY, AccelZ), "swapped"),
         ("torque_late", good.late(MotorTorque, 12), "shifted in time against each other by 12.0 ms"),
+        ("torque_little_late", good.late(MotorTorque, 3), "shifted in time against each other by 3.0 ms"),
         ("theta_late", good.late(GyroAngle, 12), "shifted in time against each other by -12.0 ms"),
         ("short", good.without_rows(|k| k >= 5000), "are too short"),
         (

@@ -174,7 +174,8 @@ fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> (Vec<Signal>, 
     (turned, told)
 }
 
-/// Time by which the torque is late against the angle, each aligned with its prediction.
+/// Time by which the torque is late against the angle: where it takes away most of what is off, and half of what a shift of
+/// both together leaves.
 #[allow(
     clippy::cast_precision_loss,
     clippy::cast_possible_wrap,
@@ -184,33 +185,29 @@ fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> (Vec<Signal>, 
 )]
 fn shift_s(record: &Record, torque: &[f64], theta: &[f64]) -> Option<f64> {
     let period_s = record.inputs.period_s;
-    let reach = (0.06 / period_s) as i64;
-    // a shift counts when it takes away most of what is off
-    let best = |signal: Signal, predicted: &[f64]| -> Option<(i64, f64)> {
-        let channel = record.channel(signal)?;
-        let rows = record.rows() as i64;
-        let off = |shift: i64| -> f64 {
-            let mut sum = 0.0;
-            for k in ((rows / 10).max(reach)..rows - reach).step_by(3) {
-                // changes, not levels
-                let step = |values: &[f64], k: i64| values[k as usize] - values[(k - 8) as usize];
-                sum += (step(&channel.values, k) - step(predicted, k - shift)).powi(2);
-            }
-            sum
-        };
-        if rows < 4 * reach {
-            return None;
-        }
-        (-reach + 8..=reach - 8)
-            .map(|shift| (shift, off(shift)))
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|best| (best.0, best.1 / off(0)))
-    };
-    let (torque, theta) = (best(Signal::MotorTorque, torque)?, best(Signal::GyroAngle, theta)?);
-    if torque.1.min(theta.1) > 0.2 {
+    let (rows, reach) = (record.rows() as i64, (0.06 / period_s) as i64);
+    if rows < 4 * reach {
         return None;
     }
-    let late = torque.0 - theta.0;
-    let shift_s = late as f64 * period_s;
-    (shift_s.abs() >= LEAST_SHIFT_S - 1e-9).then_some(shift_s)
+    let shifts = -reach + 8..=reach - 8;
+    // what is off at each shift, over all there is
+    let off = |signal: Signal, predicted: &[f64]| -> Option<Vec<f64>> {
+        let channel = record.channel(signal)?;
+        // changes, not levels
+        let step = |values: &[f64], k: i64| values[k as usize] - values[(k - 8) as usize];
+        let compared = || ((rows / 10).max(reach)..rows - reach).step_by(3);
+        let all: f64 = compared().map(|k| step(&channel.values, k).powi(2)).sum();
+        let at =
+            |shift| compared().map(|k| (step(&channel.values, k) - step(predicted, k - shift)).powi(2)).sum::<f64>();
+        Some(shifts.clone().map(|shift| at(shift) / all.max(1e-300)).collect())
+    };
+    let (torque, theta) = (off(Signal::MotorTorque, torque)?, off(Signal::GyroAngle, theta)?);
+    let together: Vec<f64> = torque.iter().zip(&theta).map(|(torque, theta)| torque + theta).collect();
+    let least = |off: &[f64]| off.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+    let nowhere = (reach - 8) as usize;
+    let ((late, torque_left), (angle_late, theta_left)) = (least(&torque)?, least(&theta)?);
+    let most = torque_left < 0.2 * torque[nowhere] || theta_left < 0.2 * theta[nowhere];
+    let against_each_other = torque_left + theta_left < 0.5 * least(&together)?.1;
+    let shift_s = (late as f64 - angle_late as f64) * period_s;
+    (most && against_each_other && shift_s.abs() >= LEAST_SHIFT_S - 1e-9).then_some(shift_s)
 }

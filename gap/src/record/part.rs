@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use gimbal_servo::bearing;
 
-use super::{Channel, Record, SHORTEST_S};
+use super::{Channel, RateNoise, Record, SHORTEST_S};
 use crate::simulate::Inputs;
 
 /// How long a wrong beginning may last [s].
@@ -21,15 +21,6 @@ impl Record {
     pub(crate) fn after_its_beginning(&self, bearing: &bearing::Config) -> Option<Self> {
         let from = (BEGINNING_S / self.inputs.period_s) as usize;
         self.part(from..self.rows(), bearing, "no prediction gets away from the beginning", "past it")
-    }
-
-    /// What is so many rows away from both ends; none where the stop was reached, or the rest is too short.
-    pub(super) fn between_ends(&self, rows: usize, bearing: &bearing::Config) -> Option<Self> {
-        if self.away_from_stop.is_some() {
-            return None;
-        }
-        let why = "no filter takes the noise out of the rate at the ends";
-        self.part(rows..self.rows().saturating_sub(rows), bearing, why, "between them")
     }
 
     fn part(&self, rows: Range<usize>, bearing: &bearing::Config, why: &str, which: &str) -> Option<Self> {
@@ -62,7 +53,7 @@ impl Record {
             channels: self.channels.iter().map(channel).collect(),
             plateau_rad: self.plateau_rad,
             away_from_stop: None,
-            rate_noise: self.rate_noise.clone(),
+            rate_noise: RateNoise { kept: self.rate_noise.kept[rows.clone()].to_vec(), ..self.rate_noise.clone() },
             faults: Vec::new(),
             notes,
         })
