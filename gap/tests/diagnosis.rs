@@ -222,15 +222,3 @@ fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
     let within = diagnose(&log, &model);
     assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
 }
-
-/// The noise of a rate is torque wherever the bearing turns around: a loop a few per cent off rings otherwise after it.
-#[test]
-fn turns_of_a_platform_anywhere_in_its_tolerance_show_nothing() {
-    for (excitation, seed) in [(Excitation::RateTable, 500_198), (Excitation::Flight, 500_032)] {
-        let (platform, effects) = corpus::anywhere(seed);
-        let case = Case { seed, excitation, seconds: SECONDS, effects, drift: 0.0, noise: 1.0 };
-        let log = as_log(&corpus::simulate_platform(&case, &platform).converted());
-        let diagnosis = diagnose(&log, &ModelFile::default());
-        assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{seed}: {:?}", names(&diagnosis));
-    }
-}

@@ -101,7 +101,7 @@ impl Slips {
         let residual = filter(residual);
         let mut shown = turned.shown(record.channels.len(), filter);
         for (block, (_, values)) in turned.blocks.iter().zip(&mut shown) {
-            let sigma = record.rate_noise.of_mean(block);
+            let sigma = record.rate_noise.of_mean(block.len());
             for value in values.iter_mut() {
                 *value *= sigma;
             }
@@ -179,14 +179,14 @@ impl Turning<'_> {
         if self.record.rate_noise.rms_radps < 1e-9 {
             return Vec::new();
         }
-        let mut shortest = if at_once(self.turns) { 1 } else { SLOWLY };
-        let mut longest = self.record.rate_noise.rows_alike().max(shortest);
+        let least = if at_once(self.turns) { 1 } else { SLOWLY };
+        let mut longest = self.record.rate_noise.rows_alike().max(least);
         loop {
-            let blocks = divided(self.turns, |row| if self.record.rate_noise.kept[row] { shortest } else { longest });
+            let blocks = divided(self.turns, longest);
             if blocks.len() <= MOST || longest > AFTER / 4 {
                 return blocks;
             }
-            (shortest, longest) = (2 * shortest, 2 * longest);
+            longest *= 2;
         }
     }
 
@@ -223,10 +223,6 @@ impl Turning<'_> {
 }
 
 impl Turned {
-    pub(crate) fn is_empty(&self) -> bool {
-        self.blocks.is_empty()
-    }
-
     /// Each block's samples after the filter, and where they begin.
     fn shown(&self, channels: usize, filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Vec<(usize, Vec<f64>)> {
         let pieces = |(group, moved): &(Vec<usize>, Kept)| {
@@ -267,15 +263,15 @@ fn far_apart(blocks: &[Block]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Runs of rows, in pieces of at most so many as there may be from their first row on.
-fn divided(rows: &[bool], longest: impl Fn(usize) -> usize) -> Vec<Block> {
+/// Runs of rows, in pieces of at most so many.
+fn divided(rows: &[bool], longest: usize) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut start = None;
     for k in 0..=rows.len() {
         let turns = rows.get(k).copied().unwrap_or(false);
         match start {
             None if turns => start = Some(k),
-            Some(first) if !turns || k - first >= longest(first).min(longest(k)) => {
+            Some(first) if !turns || k - first == longest => {
                 blocks.push(first..k);
                 start = turns.then_some(k);
             }
@@ -286,16 +282,13 @@ fn divided(rows: &[bool], longest: impl Fn(usize) -> usize) -> Vec<Block> {
 }
 
 impl RateNoise {
-    /// Standard deviation of the mean of some rows of the rate that drives the predictions [rad/s].
+    /// Standard deviation of the mean of so many rows of the rate that drives the predictions [rad/s].
     ///
     /// ```text
-    /// s^2 = rms^2 mean over f of W(f) (sin(pi f n) / (n sin(pi f)))^2        W = 1 where no filter was
+    /// s^2 = rms^2 mean over f of W(f) (sin(pi f n) / (n sin(pi f)))^2
     /// ```
-    pub(crate) fn of_mean(&self, rows: &Block) -> f64 {
-        let (lines, n) = (4 * rows.len().max(64), rows.len() as f64);
-        if self.kept[rows.clone()].contains(&true) {
-            return self.rms_radps / n.sqrt();
-        }
+    pub(crate) fn of_mean(&self, rows: usize) -> f64 {
+        let (lines, n) = (4 * rows.max(64), rows as f64);
         let of = |line: usize| {
             let share = (line as f64 + 0.5) / lines as f64;
             let angle = 0.5 * std::f64::consts::PI * share;

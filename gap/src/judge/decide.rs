@@ -156,7 +156,6 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let probabilities = Probabilities::new(&sets);
     let limits = Limits::of(problem);
     let worthy = best(&sets, |set| set.nats - set.cost).map(|best| probabilities.fuller(&sets, best));
-    let worthy = worthy.or_else(|| probabilities.rather_than_nothing(&sets));
     let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
     let shown = || {
         nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange)

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use gimbal_servo::bearing;
 
-use super::{Channel, RateNoise, Record, SHORTEST_S};
+use super::{Channel, Record, SHORTEST_S};
 use crate::simulate::Inputs;
 
 /// How long a wrong beginning may last [s].
@@ -53,7 +53,7 @@ impl Record {
             channels: self.channels.iter().map(channel).collect(),
             plateau_rad: self.plateau_rad,
             away_from_stop: None,
-            rate_noise: RateNoise { kept: self.rate_noise.kept[rows.clone()].to_vec(), ..self.rate_noise.clone() },
+            rate_noise: self.rate_noise.clone(),
             faults: Vec::new(),
             notes,
         })

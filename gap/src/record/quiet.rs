@@ -30,7 +30,7 @@ const APART: usize = 12;
 impl Record {
     /// Filters the rate where that brings the prediction closer.
     pub fn quieten(&mut self, physics: &Physics) {
-        let Some((rate_radps, pass, kept)) = filtered(&self.inputs.rate_radps) else { return };
+        let Some((rate_radps, pass)) = filtered(&self.inputs.rate_radps) else { return };
         let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
         inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
         let (as_logged, quiet) = (self.misfit(physics, &self.inputs), self.misfit(physics, &inputs));
@@ -38,7 +38,6 @@ impl Record {
         if ratios.iter().all(|ratio| *ratio < 2.0 - BETTER) && ratios.iter().any(|ratio| *ratio < BETTER) {
             self.inputs = inputs;
             self.rate_noise.pass = pass;
-            self.rate_noise.kept = kept;
         }
     }
 
@@ -62,14 +61,11 @@ pub struct RateNoise {
     pub rms_radps: f64,
     /// W from zero to half the sampling rate, evenly.
     pub pass: Vec<f64>,
-    /// Rows that no filter touched.
-    pub kept: Vec<bool>,
 }
 
 impl RateNoise {
     pub(super) fn logged(rate_radps: &[f64]) -> Self {
-        let rows = rate_radps.len();
-        Self { rms_radps: rough(rate_radps, &vec![true; rows]), pass: vec![1.0], kept: vec![true; rows] }
+        Self { rms_radps: rough(rate_radps, &vec![true; rate_radps.len()]), pass: vec![1.0] }
     }
 
     /// W at a share of half the sampling rate.
@@ -79,9 +75,8 @@ impl RateNoise {
     }
 }
 
-/// The rate through Wiener's filter, the filter, and the rows around steps, which keep theirs; none when there is nothing to
-/// filter.
-fn filtered(rate_radps: &[f64]) -> Option<(Vec<f64>, Vec<f64>, Vec<bool>)> {
+/// The rate through Wiener's filter, steps kept, and the filter; none when there is nothing to filter.
+fn filtered(rate_radps: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let rows = rate_radps.len();
     let noise = rough(rate_radps, &vec![true; rows]);
     if rows < 2 * SEGMENT || noise < 1e-9 {
@@ -113,7 +108,7 @@ fn filtered(rate_radps: &[f64]) -> Option<(Vec<f64>, Vec<f64>, Vec<bool>)> {
     for k in (0..rows).filter(|&k| step(k)) {
         kept[k.saturating_sub(AROUND)..(k + AROUND).min(rows)].fill(true);
     }
-    Some(((0..rows).map(|k| if kept[k] { rate_radps[k] } else { smooth[k] }).collect(), pass, kept))
+    Some(((0..rows).map(|k| if kept[k] { rate_radps[k] } else { smooth[k] }).collect(), pass))
 }
 
 /// W from zero to half the sampling rate.
