@@ -240,8 +240,9 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
     }
     checked.from = Some(from);
     sign(log, model, &mut checked);
-    let other = other_unit(log, model, checked.from, checked.effort_sign);
-    if let Some(other) = other.filter(|_| checked.unit.is_none()) {
+    if checked.unit.is_none()
+        && let Some(other) = other_unit(log, model, checked.from, checked.effort_sign)
+    {
         checked.words.push(other.words);
         checked.faults.push(ColumnFault {
             effect: other.effect,
@@ -295,22 +296,17 @@ fn scale(
         f64::MAX
     };
     let looks = looks_like(slope);
-    let (right, wrong, effect, value) = if by_time + OTHER_TIME < by_position.min(by_velocity) {
+    let (right, nearest, wrong, effect, value) = if by_time + OTHER_TIME < by_position.min(by_velocity) {
         checked.unit = Some(time);
-        (MotionFrom::Position, "the time column", "time_scale", slope)
+        (MotionFrom::Position, "both", "the time column", "time_scale", slope)
     } else if by_velocity < by_position {
-        (MotionFrom::Velocity, position_name, "position_scale", 1.0 / slope)
+        (MotionFrom::Velocity, velocity_name, position_name, "position_scale", 1.0 / slope)
     } else {
-        (MotionFrom::Position, velocity_name, "velocity_scale", slope)
-    };
-    let nearer = match (effect, right) {
-        ("time_scale", _) => "both",
-        (_, MotionFrom::Velocity) => velocity_name,
-        _ => position_name,
+        (MotionFrom::Position, position_name, velocity_name, "velocity_scale", slope)
     };
     checked.words.push(format!(
         "{velocity_name} and {position_name} differ by {slope:.4} ({looks}); inertia and viscous friction are nearest to \
-         the model's with {nearer}: {wrong} is {value:.4} of what it should be",
+         the model's with {nearest}: {wrong} is {value:.4} of what it should be",
     ));
     checked
         .faults

@@ -120,22 +120,23 @@ fn cross_a_wrong_unit_is_told_and_undone() {
     let position_alone = MODEL.replace("velocity = { name = \"v\", unit = \"m/s\" }\n", "");
     let as_is = log(&Truth::nominal(), Path::Sines, 24.0, 5);
     let cases = [
-        (position_alone.as_str(), "position_scale", "unit = \"m\"", "unit = \"mm\""),
-        (&position_alone, "time_scale", "unit = \"s\"", "unit = \"ms\""),
-        (MODEL, "time_scale", "unit = \"s\"", "unit = \"ms\""),
+        (position_alone.as_str(), "position_scale", "unit = \"m\"", "unit = \"mm\"", 1e-9),
+        (&position_alone, "time_scale", "unit = \"s\"", "unit = \"ms\"", 1e-9),
+        // the rate column measures the factor
+        (MODEL, "time_scale", "unit = \"s\"", "unit = \"ms\"", 0.01),
     ];
-    for (model, effect, unit, wrong) in cases {
+    for (model, effect, unit, wrong, within) in cases {
         let model = AxisModel::parse(&model.replacen(unit, wrong, 1), "axis.toml").expect("reads").expect("an axis");
         let read = AxisLog::read(as_is.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
         let diagnosis = diagnose(read, &model, Vec::new());
         assert_eq!(names(&diagnosis), [effect], "{}", text(&diagnosis));
-        assert!((value(&diagnosis, effect) / 1e-3 - 1.0).abs() < 0.01, "{}", text(&diagnosis));
+        assert!((value(&diagnosis, effect) / 1e-3 - 1.0).abs() < within, "{}", text(&diagnosis));
     }
 }
 
 #[test]
 fn cross_a_coarse_encoder_is_no_wrong_scale() {
-    // its steps are 0.2 m/s from row to row, ten times what the axis moves in a row
+    // a step is 0.2 m/s from row to row, as much as the axis moves in one
     let step = 2e-4;
     let mut coarse = String::from("t,x,v,f,code\n");
     for line in log(&Truth::nominal(), Path::Sines, 24.0, 5).lines().skip(1) {
@@ -150,33 +151,32 @@ fn cross_a_coarse_encoder_is_no_wrong_scale() {
 
 #[test]
 fn cross_a_law_with_gains_far_off_is_told_by_its_gains() {
-    let law = "[axis.controller]\noutput = \"effort\"\nposition_gain = 46800.0\nvelocity_gain = 1152.0\n";
-    let columns = "position_reference = { name = \"r\", unit = \"m\" }\n[axis.columns.auxiliary]\n";
-    let model = MODEL.replace("[axis.columns.auxiliary]\n", columns) + law;
-    let model = AxisModel::parse(&model, "axis.toml").expect("reads").expect("an axis");
-    let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5), |_| 0.0);
-    let read = AxisLog::read(logged.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
-    let diagnosis = diagnose(read, &model, Vec::new());
+    let diagnosis = diagnosed_with_law(46_800.0, 1152.0, |_| 0.0);
     // the loop of the simulator has 39000 and 960
     assert!((value(&diagnosis, "loop_gain") / 39_000.0 - 1.0).abs() < 0.01, "{}", text(&diagnosis));
 }
 
 #[test]
 fn cross_a_law_that_is_not_the_loops_is_doubted() {
-    let law = "[axis.controller]\noutput = \"effort\"\nposition_gain = 39000.0\nvelocity_gain = 960.0\n";
-    let columns = "position_reference = { name = \"r\", unit = \"m\" }\n[axis.columns.auxiliary]\n";
-    let model = MODEL.replace("[axis.columns.auxiliary]\n", columns) + law;
-    let model = AxisModel::parse(&model, "axis.toml").expect("reads").expect("an axis");
-    let diagnosed = |shaken: &dyn Fn(f64) -> f64| {
-        let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5), shaken);
-        let read = AxisLog::read(logged.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
-        diagnose(read, &model, Vec::new())
-    };
-    assert_eq!(diagnosed(&|_| 0.0).verdict, Verdict::NoGap);
+    assert_eq!(diagnosed_with_law(39_000.0, 960.0, |_| 0.0).verdict, Verdict::NoGap);
     // a thing of its own kind in the loop: a dither of 19.3 Hz that the law does not have
-    let dithered = diagnosed(&|time_s| 4e-4 * (std::f64::consts::TAU * 19.3 * time_s).sin());
+    let dither = |time_s: f64| 4e-4 * (std::f64::consts::TAU * 19.3 * time_s).sin();
+    let dithered = diagnosed_with_law(39_000.0, 960.0, dither);
     assert_eq!(dithered.verdict, Verdict::Unexplained, "{}", text(&dithered));
     assert!(dithered.unknown_probability > 0.5);
+}
+
+/// The nominal axis under a law of these gains, with what is added to the reference.
+fn diagnosed_with_law(position_gain: f64, velocity_gain: f64, added: impl Fn(f64) -> f64) -> AxisDiagnosis {
+    let law = format!(
+        "[axis.controller]\noutput = \"effort\"\nposition_gain = {position_gain:?}\nvelocity_gain = {velocity_gain:?}\n"
+    );
+    let columns = "position_reference = { name = \"r\", unit = \"m\" }\n[axis.columns.auxiliary]\n";
+    let model = MODEL.replace("[axis.columns.auxiliary]\n", columns) + &law;
+    let model = AxisModel::parse(&model, "axis.toml").expect("reads").expect("an axis");
+    let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5), added);
+    let read = AxisLog::read(logged.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
+    diagnose(read, &model, Vec::new())
 }
 
 /// The reference that the simulator's law had, from what it gave: `command = 39000 (reference - position) - 960 rate`;
