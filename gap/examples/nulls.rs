@@ -19,9 +19,7 @@ mod wilson;
 
 use corpus::{Case, Excitation, as_log};
 use gimbal_gap::judge::Verdict;
-use gimbal_model_file::{ModelFile, Tolerance};
-use gimbal_servo::Config;
-use rand::RngExt;
+use gimbal_model_file::ModelFile;
 use rayon::prelude::*;
 
 /// A log that is not `no_gap`.
@@ -33,24 +31,8 @@ struct Alarm {
     is_gap: bool,
 }
 
-/// The platform with every nominal parameter anywhere inside its tolerance, and what of that its sensors do.
-fn anywhere(seed: u64) -> (Config, Vec<(&'static str, Vec<f64>)>) {
-    let tolerance = Tolerance::default();
-    let mut platform = corpus::drifted(&Config::consistent(), 1.0, seed);
-    let rng = &mut corpus::rng(seed, 4);
-    let mut off = |tolerance: f64| tolerance * (2.0 * rng.random::<f64>() - 1.0);
-    platform.bearing.slip_rate_radps *= 1.0 + off(tolerance.default_relative);
-    let unbalance = &platform.unbalance;
-    platform.unbalance.y_kg_m += off(tolerance.mass_unbalance) * unbalance.x_kg_m.hypot(unbalance.y_kg_m);
-    let sensors = vec![
-        ("pickoff_scale", vec![off(tolerance.pickoff_scale)]),
-        ("torque_scale", vec![off(tolerance.torque_scale)]),
-    ];
-    (platform, sensors)
-}
-
 fn diagnosed(excitation: Excitation, seed: u64, seconds: f64, model: &ModelFile) -> Option<Alarm> {
-    let (platform, effects) = anywhere(seed);
+    let (platform, effects) = corpus::anywhere(seed);
     let case = Case { seed, excitation, seconds, effects, drift: 0.0, noise: 1.0 };
     let log = as_log(&corpus::simulate_platform(&case, &platform).converted());
     let diagnosis = gimbal_gap::diagnose(&log, model);

@@ -64,10 +64,15 @@ struct Measured<'a> {
 
 impl<'a> Measured<'a> {
     fn new(ground: Ground<'a>) -> Self {
-        let problem = ground.problem(None);
-        let nominal = null(&problem, None);
-        let mut on =
-            Self { ground, known: None, problem, nominal, carried: None, more: AGAIN, stands_at: f64::INFINITY };
+        let mut problem = ground.problem(None);
+        let mut nominal = null(&problem, None);
+        let near = nominal.square < NEAR * problem.whitener.count() as f64;
+        let known = if near { ground.known_behind(&nominal) } else { None };
+        if known.is_some() {
+            problem = ground.problem(known.clone());
+            nominal = null(&problem, Some(&nominal));
+        }
+        let mut on = Self { ground, known, problem, nominal, carried: None, more: AGAIN, stands_at: f64::INFINITY };
         if !on.is_beaten_by(&on.nominal) {
             rebase(&mut on.problem, &on.nominal);
             return on;
@@ -99,7 +104,7 @@ impl<'a> Measured<'a> {
     fn again(self, best: &Fit) -> Self {
         let Self { ground, problem, nominal, more, .. } = self;
         let raw = |fit: &Fit| raw_residual(problem.record, &fit.prediction);
-        let known = Some(Known { noise: raw(best), gap: raw(&nominal) });
+        let known = Some(Known { noise: raw(best), gap: raw(&nominal), platform: best.into() });
         // what is not needed any more is most of the memory
         drop(problem);
         let mut problem = ground.problem(known.clone());

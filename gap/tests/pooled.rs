@@ -52,13 +52,13 @@ fn together(diagnoses: &[Diagnosis]) -> Pool {
 }
 
 fn told(pool: &Pool) -> String {
-    pool.text(&["a", "b", "c", "d"].map(str::to_owned))
+    pool.text(&["a", "b", "c", "d", "e", "f", "g", "h"].map(str::to_owned))
 }
 
 #[test]
 fn an_effect_too_small_for_every_log_is_named_by_all_of_them() {
-    let size = 7.2e-7;
-    let logs = diagnoses(&[("cable_spring", vec![size])], Excitation::Manoeuvre, |_, _| ());
+    let size = 5.4e-7;
+    let logs = diagnoses_of(2 * LOGS, &[("cable_spring", vec![size])], Excitation::Manoeuvre, |_, _| ());
     for log in &logs {
         assert_eq!(names(log), Vec::<&str>::new());
     }

@@ -17,6 +17,7 @@ pub mod draw;
 
 use std::f64::consts::TAU;
 
+use gimbal_model_file::Tolerance;
 use gimbal_plant::{Effect, Plant, Row};
 use gimbal_servo::Config;
 use rand::{RngExt, SeedableRng};
@@ -180,6 +181,23 @@ pub fn drifted(config: &Config, share: f64, seed: u64) -> Config {
     off(&mut drifted.bearing.lubrication_factor, 0.03);
     off(&mut drifted.unbalance.x_kg_m, 0.03);
     drifted
+}
+
+/// The platform with every nominal parameter anywhere inside its tolerance, and what of that its sensors do.
+#[must_use]
+pub fn anywhere(seed: u64) -> (Config, Vec<(&'static str, Vec<f64>)>) {
+    let tolerance = Tolerance::default();
+    let mut platform = drifted(&Config::consistent(), 1.0, seed);
+    let rng = &mut rng(seed, 4);
+    let mut off = |tolerance: f64| tolerance * (2.0 * rng.random::<f64>() - 1.0);
+    platform.bearing.slip_rate_radps *= 1.0 + off(tolerance.default_relative);
+    let unbalance = &platform.unbalance;
+    platform.unbalance.y_kg_m += off(tolerance.mass_unbalance) * unbalance.x_kg_m.hypot(unbalance.y_kg_m);
+    let sensors = vec![
+        ("pickoff_scale", vec![off(tolerance.pickoff_scale)]),
+        ("torque_scale", vec![off(tolerance.torque_scale)]),
+    ];
+    (platform, sensors)
 }
 
 /// The log's columns: time, accelerations, rate, cross rate, theta, motor torque, phi.

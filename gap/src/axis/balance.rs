@@ -94,7 +94,7 @@ impl Balance {
         if !motion.stands {
             tried.extend(modes(&motion, &target, &base));
         }
-        tried.retain(|shape| !model.known_good.iter().any(|good| good == shape.effect()));
+        tried.retain(|shape| !model.trusts(shape.effect()));
         let made: Vec<(Shape, Vec<Vec<f64>>)> = {
             use rayon::prelude::*;
             tried

@@ -5,6 +5,8 @@ use std::f64::consts::{PI, TAU};
 use gimbal_model_file::AxisModel;
 
 use super::balance::{nominal, plain};
+use super::follows::{follows, lateness_error};
+use super::library::rms;
 use super::motion::{Motion, MotionFrom, NARROW, step};
 use super::smooth::Kernel;
 use super::table::AxisLog;
@@ -32,17 +34,18 @@ pub(super) struct Checked {
 }
 
 impl Checked {
-    /// A log whose columns are what their names say; its time is taken for right.
+    /// A log whose columns are what their names say; its units are taken for right.
     pub(super) fn mended(&self, log: &AxisLog) -> AxisLog {
         let mut log = log.clone();
+        let other_unit = self.unit.is_some();
         let by = |column: &mut Option<Vec<f64>>, factor: f64| {
             column.iter_mut().flatten().for_each(|value| *value /= factor);
         };
         for fault in &self.faults {
             let value = fault.parameters[0].1;
             match fault.effect {
-                "position_scale" => by(&mut log.position, value),
-                "velocity_scale" => by(&mut log.velocity, value),
+                "position_scale" if !other_unit => by(&mut log.position, value),
+                "velocity_scale" if !other_unit => by(&mut log.velocity, value),
                 "velocity_unrelated" => log.velocity = None,
                 "torque_sign" => log.effort.iter_mut().for_each(|effort| *effort *= value),
                 _ => {}
@@ -52,106 +55,22 @@ impl Checked {
     }
 }
 
-/// Two columns agree within this.
-const SAME: f64 = 0.02;
 /// How much nearer to the model another time must bring its parameters than another position or rate (a logarithm).
 const OTHER_TIME: f64 = 0.1;
+/// Share of a column that roundings of two formulas leave.
+const EXACT: f64 = 1e-5;
 /// Correlation below which two columns have nothing to do with each other.
 const UNRELATED: f64 = 0.7;
 /// Rows by which the rate may be late: half a row belongs to any difference of two.
 const LATE: f64 = 0.8;
-/// Standard errors by which it must be more than that, parts of the log that tell them, least smoothing [rows].
+/// Standard errors by which it must be more than that, least smoothing [rows].
 const SURE: f64 = 3.0;
-const PARTS: usize = 8;
 const LEAST_SIGMA: f64 = 3.0;
-/// Rows to either side in which a shift is looked for.
-const SHIFT: i32 = 12;
-
-/// How one signal follows another: `b = slope * a`, `b` late by `late_rows`.
-struct Follows {
-    slope: f64,
-    correlation: f64,
-    late_rows: f64,
-}
-
-impl Follows {
-    /// Whether the two are of one scale: noise of `a` makes the slope of `b` on `a` too small, noise of `b` that of `a`
-    /// on `b`, and the truth is in between.
-    fn is_of_one_scale(&self) -> bool {
-        let other = self.slope / self.correlation.powi(2).max(1e-6);
-        self.slope.min(other) < 1.0 + SAME && self.slope.max(other) > 1.0 - SAME
-    }
-}
-
-fn follows(a: &[f64], b: &[f64], valid: &[bool]) -> Follows {
-    let sums = |shift: i32| {
-        let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-        let span = SHIFT.unsigned_abs() as usize + 1;
-        for k in (span..a.len().saturating_sub(span)).filter(|k| valid[*k]) {
-            let other = b[k.saturating_add_signed(shift as isize)];
-            ab += a[k] * other;
-            aa += a[k] * a[k];
-            bb += other * other;
-        }
-        (ab, aa.max(1e-300), bb.max(1e-300))
-    };
-    let of = |shift: i32| {
-        let (ab, aa, bb) = sums(shift);
-        ab / (aa * bb).sqrt()
-    };
-    let best = (-SHIFT..=SHIFT).max_by(|x, y| of(*x).abs().total_cmp(&of(*y).abs())).unwrap_or(0);
-    // vertex of the parabola through three shifts
-    let (low, middle, high) = (of(best - 1).abs(), of(best).abs(), of(best + 1).abs());
-    let curve = low - 2.0 * middle + high;
-    let vertex = if best.abs() < SHIFT && curve < 0.0 { 0.5 * (low - high) / curve } else { 0.0 };
-    let (ab, aa, _) = sums(best);
-    Follows { slope: ab / aa, correlation: of(best), late_rows: f64::from(best) + vertex.clamp(-0.5, 0.5) }
-}
-
 /// Smoothing that leaves the motion and little of the noise: that of the balance, 3 rows at least.
 fn in_band(log: &AxisLog, model: &AxisModel) -> f64 {
     let widest = [MotionFrom::Position, MotionFrom::Velocity].map(|from| Motion::new(log, model, from, 1.0, NARROW));
     let sigma = widest.map(|motion| motion.whole_sigma());
     sigma[0].min(sigma[1]).max(LEAST_SIGMA)
-}
-
-/// Standard error of a lateness [rows], from what eight parts of the log say of it by themselves:
-///
-/// ```text
-/// late - late_of_all = -sum (b/slope - a) da / sum da^2
-/// ```
-fn lateness_error(a: &[f64], b: &[f64], both: &Follows, log: &AxisLog) -> f64 {
-    let mut earlier = b.to_vec();
-    advance(&mut earlier, both.late_rows);
-    let part = (a.len() / PARTS).max(3);
-    let span = SHIFT.unsigned_abs() as usize + 1;
-    let own: Vec<f64> = (0..PARTS)
-        .map(|place| {
-            let (mut with, mut square) = (0.0, 1e-300);
-            let rows = (place * part).max(span)..((place + 1) * part).min(a.len().saturating_sub(span));
-            for k in rows.filter(|k| log.valid[*k]) {
-                let slope = 0.5 * (a[k + 1] - a[k - 1]);
-                with -= (earlier[k] / both.slope - a[k]) * slope;
-                square += slope * slope;
-            }
-            with / square
-        })
-        .collect();
-    let mean = own.iter().sum::<f64>() / own.len() as f64;
-    (own.iter().map(|late| (late - mean).powi(2)).sum::<f64>() / (own.len() * (own.len() - 1)) as f64).sqrt()
-}
-
-/// Takes a signal `rows` earlier.
-pub(super) fn advance(values: &mut [f64], rows: f64) {
-    let last = values.len() - 1;
-    let old = values.to_vec();
-    for (k, value) in values.iter_mut().enumerate() {
-        let place = (k as f64 + rows).clamp(0.0, last as f64);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the rows")]
-        let low = place.floor() as usize;
-        let share = place - low as f64;
-        *value = old[low] + share * (old[(low + 1).min(last)] - old[low]);
-    }
 }
 
 /// Position of a rotary axis that wraps, unwrapped.
@@ -204,10 +123,10 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
             both.late_rows * period_ms,
             step(velocity)
         ));
-        if super::library::rms(&logged) == 0.0 {
+        if rms(&logged) == 0.0 {
             checked.words.push(format!("{velocity_name} is zero throughout: the axis stands, or the column is empty"));
         } else if both.correlation.abs() < UNRELATED {
-            let moving = super::library::rms(&rate);
+            let moving = rms(&rate);
             if moving > 2.0 * step(velocity) {
                 checked.words.push(format!("{velocity_name} and {position_name} do not belong together"));
                 checked.faults.push(ColumnFault {
@@ -223,7 +142,8 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
             } else {
                 from = scale(log, model, both.slope, &mut checked, (&position_name, &velocity_name));
             }
-            if both.late_rows - SURE * lateness_error(&rate, &logged, &both, log) > LATE {
+            let surely_late = both.late_rows - SURE * lateness_error(&rate, &logged, &both, log);
+            if surely_late > LATE && !model.trusts("velocity_delay") {
                 let late_s = both.late_rows * log.period_s;
                 checked.words.push(format!(
                     "{velocity_name} is {:.1} ms late: a filter, a difference over several rows, or an older sample",
@@ -285,10 +205,12 @@ fn scale(
         };
         away(0) + away(1)
     };
-    let by_position = distance(log, MotionFrom::Position);
-    let by_velocity = distance(log, MotionFrom::Velocity);
+    // a column that is known to be good is not the wrong one
+    let unless = |effect: &str, distance: f64| if model.trusts(effect) { f64::MAX } else { distance };
+    let by_position = unless("velocity_scale", distance(log, MotionFrom::Position));
+    let by_velocity = unless("position_scale", distance(log, MotionFrom::Velocity));
     let time = Unit::Time(slope);
-    let by_time = if slope > 0.0 {
+    let by_time = if slope > 0.0 && !model.trusts("time_scale") {
         let mut other = log.clone();
         time.undo(&mut other);
         distance(&other, MotionFrom::Position)
@@ -326,9 +248,9 @@ fn sign(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
         return;
     }
     let (found, _) = plain(&motion);
-    let drag = found[1] * super::library::rms(&motion.v) + found[2];
+    let drag = found[1] * rms(&motion.v) + found[2];
     let name = &model.columns.effort.name;
-    if found[0] < 0.0 && drag < 0.0 {
+    if found[0] < 0.0 && drag < 0.0 && !model.trusts("torque_sign") {
         checked.effort_sign = -1.0;
         checked.words.push(format!(
             "`{name}` has the opposite sign: it decelerates where it should accelerate, and friction would drive; turned round"
@@ -363,7 +285,8 @@ fn others(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
             both.correlation,
             both.late_rows * 1e3 * log.period_s
         ));
-        if both.correlation > 0.999_99 {
+        let left = rms(&log.effort) * (1.0 - both.correlation.powi(2)).max(0.0).sqrt();
+        if left < step(&log.effort).max(EXACT * rms(&log.effort)) {
             checked.words.push(format!(
                 "`{effort_name}` is the command times a constant, not a measurement: the drive is not seen"
             ));

@@ -4,6 +4,7 @@ use gimbal_model_file::AxisModel;
 
 use super::balance::Balance;
 use super::columns::{self, ColumnFault};
+use super::follows::advance;
 use super::judge::{Found, Parameter, Ranked, Shrunk, by_block, judge, shrunk};
 use super::library::rms;
 use super::motion::{Motion, MotionFrom, NARROW, WIDE};
@@ -86,7 +87,7 @@ fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Mot
     let late = checked.faults.iter().find(|fault| fault.effect == "velocity_delay").map(|fault| fault.parameters[0].1);
     let scaled = checked.faults.iter().any(|fault| fault.effect.ends_with("_scale"));
     if let (Some(late_s), MotionFrom::Velocity, Some(velocity)) = (late, from, &mut log.velocity) {
-        columns::advance(velocity, late_s / log.period_s);
+        advance(velocity, late_s / log.period_s);
         log.notes.push(format!("the rate is taken {:.1} ms earlier for the balance", 1e3 * late_s));
     }
     let motion_of = |noise_share: f64| {
@@ -309,9 +310,8 @@ fn score(
 /// What these signals cannot tell apart, whatever their size, and what would.
 fn remarks(found: &[Found], model: &AxisModel, balance: &Balance) -> Vec<String> {
     let named = |effect: &str| found.iter().any(|found| found.effect == effect);
-    let good = |effect: &str| model.known_good.iter().any(|good| good == effect);
     let mut notes = Vec::new();
-    if named("constant_torque") && !good("torque_bias") {
+    if named("constant_torque") && !model.trusts("torque_bias") {
         notes.push(
             "constant_torque may as well be torque_bias, an offset of the effort's sensor or drive, or gravity; told apart \
              by a run with the axis turned round, or by the effort logged with the drive off"

@@ -147,7 +147,7 @@ fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     m.needed = vec![0.0; m.q.len()];
     let mut columns: Vec<Vec<f64>> = errors.iter().map(|(_, _, error)| error.clone()).collect();
     let base: Vec<usize> = (0..columns.len()).collect();
-    let mut shapes = vec![Shape::Constant];
+    let mut shapes = if model.trusts("command_bias") { Vec::new() } else { vec![Shape::Constant] };
     for channel in 0..m.auxiliary.len() {
         shapes.extend([Shape::Load { channel }, Shape::LoadFriction { channel }]);
         let mean = target.iter().sum::<f64>() / rows.max(1) as f64;
@@ -161,7 +161,7 @@ fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         candidates.push(Candidate { shape, columns: (start..columns.len()).collect() });
     }
     // a rate that the loop has later than the log
-    if controller.velocity_gain != 0.0 {
+    if controller.velocity_gain != 0.0 && !model.trusts("velocity_delay") {
         let late: Vec<f64> = m.smoothed(&m.a).iter().map(|a| controller.velocity_gain * a).collect();
         candidates.push(Candidate { shape: Shape::RateDelay, columns: vec![columns.len()] });
         columns.push(late);
@@ -199,7 +199,7 @@ fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     let held = std::mem::replace(&mut problem.grams.precision, vec![0.0; columns.len()]);
     let free = problem.search(Vec::new());
     let better = |free: f64, held: f64| free - problem.floor_square < FREED * (held - problem.floor_square);
-    if better(free.square(), best.square()) {
+    if better(free.square(), best.square()) && !model.trusts("loop_gain") {
         best = free;
     } else {
         problem.grams.precision = held;

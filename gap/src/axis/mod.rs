@@ -6,6 +6,7 @@ mod balance;
 mod columns;
 mod diagnose;
 mod experiment;
+mod follows;
 mod judge;
 mod law;
 mod library;

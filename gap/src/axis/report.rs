@@ -101,6 +101,11 @@ fn sentence(found: &Found) -> String {
     format!("{} ({:.0} %; {})", found.effect, 100.0 * found.probability, parameters.join(", "))
 }
 
+/// A share in per cent, to be printed with one digit: what rounds to nothing has no sign.
+fn percent(share: f64) -> f64 {
+    if share.abs() < 5e-4 { 0.0 } else { 100.0 * share }
+}
+
 /// The verdict in words.
 #[must_use]
 pub fn text(diagnosis: &AxisDiagnosis) -> String {
@@ -117,7 +122,7 @@ pub fn text(diagnosis: &AxisDiagnosis) -> String {
     };
     for (found, sentence) in diagnosis.found.iter().zip(&named) {
         let _ = match found.shows_in {
-            "effort" => writeln!(out, "  {:5.1} %  {sentence}", 100.0 * found.removes),
+            "effort" => writeln!(out, "  {:5.1} %  {sentence}", percent(found.removes)),
             domain => writeln!(out, "  in the {domain}: {sentence}"),
         };
     }
@@ -147,7 +152,12 @@ pub fn text(diagnosis: &AxisDiagnosis) -> String {
         let _ = writeln!(
             out,
             "  {}: rms {:.4e} to {:.4e} {}, noise {:.1e}: {:.1} % of the gap's power gone ({low:.1} to {high:.1})",
-            s.name, s.before, s.after, s.unit, s.noise_floor, s.reduction_percent
+            s.name,
+            s.before,
+            s.after,
+            s.unit,
+            s.noise_floor,
+            percent(0.01 * s.reduction_percent)
         );
         if low <= 0.0 && diagnosis.verdict != Verdict::NoGap {
             let _ = writeln!(out, "    no improvement is shown: the interval includes zero");
@@ -269,7 +279,7 @@ fn tables(out: &mut String, diagnosis: &AxisDiagnosis) {
     let row = |cells: &[String]| {
         format!("<tr>{}</tr>", cells.iter().map(|cell| format!("<td>{}</td>", escaped(cell))).collect::<String>())
     };
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let percent = |share: f64| format!("{:.1} %", percent(share));
     table(
         "Ranking",
         "<th>effects</th><th>probability</th>",

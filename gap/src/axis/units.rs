@@ -51,8 +51,10 @@ pub(super) fn other_unit(
     let known = |factor: f64| UNITS.into_iter().find(|unit| !off(factor, *unit));
     let name = if from == MotionFrom::Position { "position_scale" } else { "velocity_scale" };
     let (effect, unit, of) = match (known(1.0 / inertia), known(inertia.sqrt())) {
-        (Some(factor), _) if !off(viscous, inertia) => (name, Unit::Motion(factor), "position and rate"),
-        (_, Some(factor)) if log.velocity.is_none() && !off(viscous, inertia.sqrt()) => {
+        (Some(factor), _) if !off(viscous, inertia) && !model.trusts(name) => {
+            (name, Unit::Motion(factor), "position and rate")
+        }
+        (_, Some(factor)) if log.velocity.is_none() && !off(viscous, inertia.sqrt()) && !model.trusts("time_scale") => {
             ("time_scale", Unit::Time(factor), "time")
         }
         _ => return None,

@@ -16,7 +16,7 @@ use super::signals::{Kept, Signals, peak, residual, scaled, valid};
 use super::slip::{Slips, Turned, Turning};
 use super::turning::{at_once, impulse, mostly, remembered, turning_noise, turns};
 use super::whiten::Loop;
-use super::{Columns, Problem, Whitener};
+use super::{Columns, Fit, Problem, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, narrow, not_looked_for, nuisances, platform};
 use crate::record::{Record, Signal, rough};
 use crate::simulate::{Begin, Physics, Prediction, predict};
@@ -49,6 +49,8 @@ pub(crate) struct Ground<'a> {
     /// Rows at which the bearing turns around, and what the noise of the rate does there.
     turns: Vec<bool>,
     turned: OnceLock<Turned>,
+    /// What the nominal parameters and a few effects do not explain.
+    rest: OnceLock<Signals>,
 }
 
 /// What fits leave of a log.
@@ -58,6 +60,23 @@ pub(crate) struct Known {
     pub(crate) noise: Signals,
     /// The nominal parameters alone: what lines are looked for in.
     pub(crate) gap: Signals,
+    /// The platform behind that noise.
+    pub(crate) platform: Fitted,
+}
+
+/// A platform as it was fitted. A few per cent of the loop's frequency, a tolerance, are a fifth of what is left of a pulse
+/// after a period of it.
+#[derive(Debug, Clone)]
+pub(crate) struct Fitted {
+    physics: Physics,
+    begin: Begin,
+    prediction: Prediction,
+}
+
+impl From<&Fit> for Fitted {
+    fn from(fit: &Fit) -> Self {
+        Self { physics: fit.physics.clone(), begin: fit.begin.clone(), prediction: fit.prediction.clone() }
+    }
 }
 
 impl<'a> Ground<'a> {
@@ -108,29 +127,42 @@ impl<'a> Ground<'a> {
             sigma,
             raw,
             turned: OnceLock::new(),
+            rest: OnceLock::new(),
         }
+    }
+
+    fn rest(&self) -> &Signals {
+        self.rest.get_or_init(|| {
+            let raw = Raw { columns: &self.raw, layout: &self.columns, sigma: &self.sigma, valid: &self.valid };
+            rest(&raw, &self.target)
+        })
+    }
+
+    /// The first noise behind the platform as it was fitted under it; none where that is no matter.
+    pub(crate) fn known_behind(&self, fit: &Fit) -> Option<Known> {
+        if self.turned.get().is_none_or(Turned::is_empty) {
+            return None;
+        }
+        let rest = scaled(self.rest().clone(), &self.noise);
+        Some(Known { noise: rest.clone(), gap: rest, platform: fit.into() })
     }
 
     /// Under the noise that what is known to be left shows; without it, under what the nominal parameters and a few effects
     /// do not explain.
     pub(crate) fn problem(&self, known: Option<Known>) -> Problem<'a> {
-        let known = match known {
-            None => {
-                let raw = Raw { columns: &self.raw, layout: &self.columns, sigma: &self.sigma, valid: &self.valid };
-                let rest = rest(&raw, &self.target);
-                Known { noise: rest.clone(), gap: rest }
-            }
-            Some(Known { noise, gap }) => {
-                Known { noise: scaled(noise, &self.over_noise), gap: scaled(gap, &self.over_noise) }
+        let (noise, gap, platform) = match known {
+            None => (self.rest().clone(), self.rest().clone(), None),
+            Some(Known { noise, gap, platform }) => {
+                (scaled(noise, &self.over_noise), scaled(gap, &self.over_noise), Some(platform))
             }
         };
-        let whitener = self.whitener(&known.noise);
+        let whitener = self.whitener(&noise, platform.as_ref());
         let period_s = self.record.inputs.period_s;
         let path = Path::new(&whitener, &self.impulse.channels, self.impulse.torque_nm, period_s);
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
         let mut more = Vec::new();
-        for candidate in self.narrow(&path, &whitener, &known.gap) {
+        for candidate in self.narrow(&path, &whitener, &gap) {
             columns.first.push(self.raw.len() + more.len());
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             more.extend(self.draft().probes(&candidate));
@@ -163,6 +195,7 @@ impl<'a> Ground<'a> {
     pub(crate) fn forget(&mut self) {
         self.raw = Vec::new();
         self.turned = OnceLock::new();
+        self.rest = OnceLock::new();
     }
 
     fn draft(&self) -> Draft<'_> {
@@ -170,7 +203,7 @@ impl<'a> Ground<'a> {
         Draft { record: self.record, base, begin, nominal, over_noise: &self.over_noise }
     }
 
-    fn whitener(&self, rest: &Signals) -> Whitener {
+    fn whitener(&self, rest: &Signals, platform: Option<&Fitted>) -> Whitener {
         let (base, record, nominal, turns) = (&self.base, self.record, &self.nominal, &self.turns);
         let turning_noise = if at_once(turns) { 0.0 } else { turning_noise(base, record, nominal, turns) };
         let (period_s, rate_noise) = (record.inputs.period_s, &record.rate_noise);
@@ -181,9 +214,11 @@ impl<'a> Ground<'a> {
         if mostly(turns) {
             return whitener;
         }
-        let turned = self.turned.get_or_init(|| {
-            Turning { record, base, begin: &self.begin, nominal, turns, scaled: &self.over_noise }.turned()
-        });
+        let turning =
+            |base, begin, nominal| Turning { record, base, begin, nominal, turns, scaled: &self.over_noise }.turned();
+        let as_fitted = platform.map(|own| turning(&own.physics, &own.begin, &own.prediction));
+        let turned =
+            as_fitted.as_ref().unwrap_or_else(|| self.turned.get_or_init(|| turning(base, &self.begin, nominal)));
         // what the turns do is no noise of any frequency: that is measured again without it
         let first = Slips::new(turned, record, rest, |signals| whitener.filter(signals));
         let whitener = whitener.with_slips(first).measured_again(rest, behind);

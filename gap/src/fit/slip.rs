@@ -223,6 +223,10 @@ impl Turning<'_> {
 }
 
 impl Turned {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
     /// Each block's samples after the filter, and where they begin.
     fn shown(&self, channels: usize, filter: impl Fn(&Signals) -> Vec<f64> + Sync) -> Vec<(usize, Vec<f64>)> {
         let pieces = |(group, moved): &(Vec<usize>, Kept)| {

@@ -56,9 +56,13 @@ impl Yardstick {
     }
 }
 
-/// The reference plant under the logged inputs, before and after; none where it cannot be built.
+/// The reference plant under the logged inputs, before and after; none where it cannot be built, or a channel has nothing
+/// that counts once it has come into step.
 #[must_use]
 pub fn free_running(record: &Record, model: &ModelFile, decision: &Decision, fit: &Fit) -> Vec<Yardstick> {
+    if !record.channels.iter().all(|channel| counted(record, channel).next().is_some()) {
+        return Vec::new();
+    }
     let (config, mut effects) = closing(decision, fit, model);
     // scales within their tolerances were fitted too, and so was the accelerometers' alignment
     let sensors = &fit.physics.measurement;
@@ -85,13 +89,17 @@ pub fn free_running(record: &Record, model: &ModelFile, decision: &Decision, fit
 /// Rms of residuals from where a run has come into step, channel by channel; the angle has no zero of its own.
 pub(crate) fn in_step(record: &Record, residuals: &[Vec<f64>]) -> Vec<f64> {
     let of = |(residual, channel): (&Vec<f64>, &Channel)| {
-        let scored = (0..record.rows()).filter(|&k| channel.valid[k]);
-        let scored = scored.filter(|&k| k as f64 * record.inputs.period_s >= COMES_IN_S);
-        let off: Vec<f64> = scored.map(|k| residual[k]).collect();
+        let off: Vec<f64> = counted(record, channel).map(|k| residual[k]).collect();
         let level = if channel.signal == Signal::GimbalAngle { mean(&off) } else { 0.0 };
         mean(&off.iter().map(|value| (value - level).powi(2)).collect::<Vec<_>>()).sqrt()
     };
     residuals.iter().zip(&record.channels).map(of).collect()
+}
+
+/// Rows of a channel that count once a run has come into step.
+fn counted<'a>(record: &'a Record, channel: &'a Channel) -> impl Iterator<Item = usize> + 'a {
+    let in_step = |&k: &usize| channel.valid[k] && k as f64 * record.inputs.period_s >= COMES_IN_S;
+    (0..record.rows()).filter(in_step)
 }
 
 fn index(signal: Signal) -> usize {

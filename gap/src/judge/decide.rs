@@ -7,7 +7,7 @@ use super::left_over::left_over;
 use super::probability::{Probabilities, SetProbability};
 use super::samples::{pickoff_step, stop_change};
 use super::strange::{Stranger, strangers};
-use super::weigh::{Weighed, best, holds, weigh};
+use super::weigh::{Weighed, best, caution, holds, weigh};
 use crate::fit::{Fit, Problem, Search};
 
 /// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be
@@ -27,6 +27,8 @@ const MOVING: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 
 /// How much more torques of no effect must take after a stop, and where the bearing turns around most of the time: a wrong
 /// beginning, and the noise of the rate, are like some of them.
 const WARY: f64 = 1.6;
+/// Probability of something unknown beside what the samples show by themselves.
+const SHOWN: f64 = 0.05;
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
 
@@ -156,13 +158,14 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let probabilities = Probabilities::new(&sets);
     let limits = Limits::of(problem);
     let worthy = best(&sets, |set| set.nats - set.cost).map(|best| probabilities.fuller(&sets, best));
+    let freely = || caution(problem) <= 1.0;
+    let worthy = worthy.or_else(|| probabilities.rather_than_nothing(&sets).filter(|_| freely()));
     let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
     let shown = || {
         nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange)
-            || stop_change(problem, 1.0, tolerance).is_some()
             || pickoff_step(problem, &search.null).is_some()
     };
-    // a gap that torques of no effect show, or the samples, is none that the effect has to show
+    // a gap that torques of no effect show, or the pick-off's steps, is none that the effect has to show
     let best = worthy.or_else(|| best(&sets, |set| set.nats - set.rare).filter(|_| shown()));
     let chosen = best.and_then(|set| set.fit);
     let before = left_over(problem, &search.null.residual);
@@ -267,7 +270,11 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
             || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 10.0 * TURNING.left_over
         {
             decision.verdict = Verdict::Explained;
-            decision.unknown_probability = decision.unknown_probability.min(0.05);
+            let sure = 1.0 - decision.unknown_probability;
+            decision.unknown_probability = decision.unknown_probability.min(SHOWN);
+            for set in decision.ranking.iter_mut().chain(&mut decision.alternatives) {
+                set.probability *= (1.0 - decision.unknown_probability) / sure;
+            }
         } else if decision.verdict == Verdict::Unexplained {
             decision.verdict = Verdict::PartlyExplained;
         }

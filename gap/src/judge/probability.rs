@@ -14,6 +14,8 @@ const CHANCE: f64 = 1.0;
 const LIKELIER: f64 = 0.5;
 /// How much likelier than that one the likeliest of them must be.
 const THAN_ONE: f64 = 1.5;
+/// Probability of there being nothing from which on down there is something.
+const HARDLY: f64 = 0.2;
 
 /// A set of effects and its probability.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +73,15 @@ impl Probabilities {
         let likeliest = fuller().max_by(|a, b| a.1.total_cmp(b.1));
         let likelier = |(_, probability): &(&Weighed, &f64)| together > LIKELIER && **probability > THAN_ONE * own;
         likeliest.filter(likelier).map_or(best, |(set, _)| set)
+    }
+
+    /// The likeliest set, where there being nothing is improbable though no set brings what it has to by itself; a torque on
+    /// the float has to, which a bias of the logged rate seems to be too.
+    pub(crate) fn rather_than_nothing<'a>(&self, sets: &'a [Weighed]) -> Option<&'a Weighed> {
+        let fitted = sets.iter().zip(&self.sets).filter(|(set, _)| set.fit.is_some());
+        let likeliest = fitted.max_by(|a, b| a.1.total_cmp(b.1)).map(|(set, _)| set);
+        let on_float = |effect: &&str| ["float_torque", "g_sensitive_float_torque"].contains(effect);
+        likeliest.filter(|set| self.nothing < HARDLY && !set.effects.iter().any(on_float))
     }
 
     /// The most probable first.

@@ -11,6 +11,8 @@ use crate::library::{NAMED, releases};
 pub(crate) const COST_OF_SHIFT: f64 = 15.0;
 /// How much more where the bearing turns around most of the time: its friction is as good as unknown there.
 const TURNING: f64 = 2.0;
+/// The same after a stop: how the float came off it is not known to its noise.
+const AFTER_STOP: f64 = 1.6;
 /// Evidence from which on an effect is likelier than not, from logs with open answers [nats].
 const RARE: f64 = 7.5;
 pub(crate) const RARE_SHIFT: f64 = 5.0;
@@ -112,17 +114,26 @@ pub(crate) fn names(fit: &Fit) -> Vec<&'static str> {
 
 fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
     let effects: Vec<&str> = set.iter().map(|&index| problem.candidates[index].effect).collect();
-    costs_of(&effects, problem.turns_mostly)
+    costs_of(&effects, caution(problem))
 }
 
-/// What effects must bring to be named, and from where on they are likelier than not; whether the bearing turns around
-/// most of the time.
-pub(crate) fn costs_of(effects: &[&str], turns_mostly: bool) -> (f64, f64) {
+/// How much more an effect must bring in this log than where the platform moves freely.
+pub(crate) fn caution(problem: &Problem) -> f64 {
+    match (problem.turns_mostly, problem.record.comes_near_a_stop()) {
+        (true, _) => TURNING,
+        (false, true) => AFTER_STOP,
+        (false, false) => 1.0,
+    }
+}
+
+/// What effects must bring to be named, and from where on they are likelier than not; `caution` times what they
+/// must anywhere.
+pub(crate) fn costs_of(effects: &[&str], caution: f64) -> (f64, f64) {
     let shifts = effects.iter().filter(|effect| !releases(effect).is_empty()).count() as f64;
     let added = effects.len() as f64 - shifts;
     let beside = RARE_BESIDE * (effects.len() as f64 - 1.0).max(0.0);
     let (cost, rare) = (NAMED * added + COST_OF_SHIFT * shifts, RARE * added + RARE_SHIFT * shifts + beside);
-    if turns_mostly { (TURNING * cost, TURNING * rare) } else { (cost, rare) }
+    (caution * cost, caution * rare)
 }
 
 /// Whether a set holds all of another one.

@@ -8,8 +8,8 @@ use super::material::Material;
 use super::parameters::Unit;
 use crate::fit::is_idle;
 use crate::judge::{
-    HELPS, LEAST_SHARE, NEVER, Weighed, at_a_bound, beyond, carried_by_one_log, carried_by_one_stretch, costs_of,
-    is_part, worth_their_more,
+    HELPS, LEAST_SHARE, NEVER, Weighed, at_a_bound, beyond, carried_by_one_log, carried_by_one_stretch, caution,
+    costs_of, is_part, worth_their_more,
 };
 
 /// Sets in the order of their fits, then effects that were only looked at.
@@ -20,9 +20,9 @@ pub(super) fn weigh(
     promises: &[Promise],
     tolerance: &Tolerance,
 ) -> Vec<Weighed> {
-    let turns_mostly = materials.iter().all(|material| material.problem.turns_mostly);
+    let caution = materials.iter().map(|material| caution(&material.problem)).fold(f64::INFINITY, f64::min);
     let of = |(index, fitted): (usize, &Fitted)| {
-        let (cost, rare) = costs_of(&fitted.effects.names, turns_mostly);
+        let (cost, rare) = costs_of(&fitted.effects.names, caution);
         let nats = fitted.worth()
             - null.worth()
             - alone(null, fits, fitted)
@@ -39,7 +39,7 @@ pub(super) fn weigh(
     for promise in promises {
         let effects = vec![promise.candidate.effect];
         if !all.iter().any(|set| set.effects == effects) {
-            let (cost, rare) = costs_of(&effects, turns_mostly);
+            let (cost, rare) = costs_of(&effects, caution);
             all.push(Weighed { effects, fit: None, nats: promise.gain, cost, rare });
         }
     }

@@ -28,6 +28,8 @@ const SHORTEST_S: f64 = 6.0;
 /// Least rms change of the vehicle rate [rad/s] and of the acceleration [m/s2] that excite anything.
 const LEAST_RATE_RADPS: f64 = 1.5e-3;
 const LEAST_ACCEL_MPS2: f64 = 0.1;
+/// How long after a stop the way there may still show: two seconds left a loop 7 % off, by eight standard errors [s].
+const SETTLES_S: f64 = 3.0;
 /// Shares of the nominal stop between which the float may have touched it.
 const NEAR_STOP: [f64; 2] = [0.95, 1.05];
 
@@ -179,7 +181,7 @@ impl Record {
             }
             theta.values.iter().map(|value| value.abs() > near).collect()
         };
-        let settle = (2.0 / period_s) as usize;
+        let settle = (SETTLES_S / period_s) as usize;
         let (mut wait, mut from, mut longest) = (0, 0, 0..0);
         for (k, on_stop) in on_stop.iter().enumerate() {
             wait = if *on_stop { settle } else { wait.saturating_sub(1) };
@@ -194,7 +196,7 @@ impl Record {
         }
         self.away_from_stop = Some(longest);
         self.notes.push(format!(
-            "the float was {} a stop for {:.2} s; masked with 2 s after each",
+            "the float was {} a stop for {:.2} s; masked with {SETTLES_S} s after each",
             if self.plateau_rad.is_some() { "on" } else { "near" },
             on_stop.iter().filter(|on_stop| **on_stop).count() as f64 * period_s
         ));

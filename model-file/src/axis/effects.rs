@@ -4,7 +4,7 @@ use super::{AxisModel, AxisTolerance};
 use crate::fields::nearest;
 
 /// Names of the effects of an axis.
-pub const EFFECTS: [&str; 31] = [
+pub const EFFECTS: [&str; 37] = [
     "inertia",
     "viscous_friction",
     "friction_level",
@@ -36,6 +36,12 @@ pub const EFFECTS: [&str; 31] = [
     "load_gain",
     "load_ripple",
     "velocity_delay",
+    "velocity_scale",
+    "position_scale",
+    "time_scale",
+    "torque_sign",
+    "command_bias",
+    "loop_gain",
 ];
 
 /// What is wrong with a name that is no effect.
@@ -47,6 +53,9 @@ pub(super) fn unknown(known_good: &[String]) -> Option<String> {
     ))
 }
 
+/// Tolerance of gains that are known to be good, relative.
+const EXACTLY: f64 = 1e-6;
+
 /// Holds the nominal parameters that are known to be good where the model has them.
 pub(super) fn hold(model: &mut AxisModel) {
     let AxisTolerance { inertia, viscous, coulomb } = &mut model.tolerance;
@@ -54,5 +63,18 @@ pub(super) fn hold(model: &mut AxisModel) {
         if model.known_good.iter().any(|good| good == name) {
             *tolerance = 0.0;
         }
+    }
+    if model.trusts("loop_gain")
+        && let Some(controller) = &mut model.controller
+    {
+        controller.tolerance = EXACTLY;
+    }
+}
+
+impl AxisModel {
+    /// Whether an effect cannot be, as its part is known to be good.
+    #[must_use]
+    pub fn trusts(&self, effect: &str) -> bool {
+        self.known_good.iter().any(|good| good == effect)
     }
 }

@@ -18,10 +18,7 @@ pub(super) fn beyond(balance: &Balance, model: &AxisModel, shifts: [f64; 3], err
     let outside: Vec<usize> =
         (0..3).filter(|&index| worth(index) && !within(model, index, shifts[index], errors[index])).collect();
     let known: Vec<usize> = (0..3).filter(|&index| base[index] > 0.0).collect();
-    if outside.len() > 1
-        && outside.iter().all(|index| known.contains(index))
-        && !model.known_good.iter().any(|good| good == "torque_scale")
-    {
+    if outside.len() > 1 && outside.iter().all(|index| known.contains(index)) && !model.trusts("torque_scale") {
         let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
         let factors: Vec<(f64, f64)> = known
             .iter()
