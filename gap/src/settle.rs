@@ -66,8 +66,7 @@ impl<'a> Measured<'a> {
     fn new(ground: Ground<'a>) -> Self {
         let mut problem = ground.problem(None);
         let mut nominal = null(&problem, None);
-        let near = nominal.square < NEAR * problem.whitener.count() as f64;
-        let known = if near { ground.known_behind(&nominal) } else { None };
+        let known = if is_near(&problem, &nominal) { ground.known_behind(&nominal) } else { None };
         if known.is_some() {
             problem = ground.problem(known.clone());
             nominal = null(&problem, Some(&nominal));
@@ -78,9 +77,8 @@ impl<'a> Measured<'a> {
             return on;
         }
         // near the noise, and at the end of their tolerance, the nominal parameters stand for an effect
-        let near = on.nominal.square < NEAR * on.problem.whitener.count() as f64;
         let mut best = on.nominal.clone();
-        if near && best.is_strained(&on.problem) {
+        if is_near(&on.problem, &best) && best.is_strained(&on.problem) {
             rebase(&mut on.problem, &best);
             best = look(&on.problem, best, None).closest().clone();
             best = ended(&mut on.problem, best);
@@ -132,6 +130,11 @@ impl<'a> Measured<'a> {
             best = still.clone();
         }
     }
+}
+
+/// Whether a fit is near the noise.
+fn is_near(problem: &Problem, fit: &Fit) -> bool {
+    fit.square < NEAR * problem.whitener.count() as f64
 }
 
 /// A fit under another noise, if its effects are looked for there.

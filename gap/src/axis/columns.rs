@@ -63,9 +63,11 @@ const EXACT: f64 = 1e-5;
 const UNRELATED: f64 = 0.7;
 /// Rows by which the rate may be late: half a row belongs to any difference of two.
 const LATE: f64 = 0.8;
-/// Standard errors by which it must be more than that, least smoothing [rows].
+/// Standard errors by which it must be more than that.
 const SURE: f64 = 3.0;
+/// Least smoothing [rows].
 const LEAST_SIGMA: f64 = 3.0;
+
 /// Smoothing that leaves the motion and little of the noise: that of the balance, 3 rows at least.
 fn in_band(log: &AxisLog, model: &AxisModel) -> f64 {
     let widest = [MotionFrom::Position, MotionFrom::Velocity].map(|from| Motion::new(log, model, from, 1.0, NARROW));

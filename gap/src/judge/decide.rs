@@ -7,7 +7,7 @@ use super::left_over::left_over;
 use super::probability::{Probabilities, SetProbability};
 use super::samples::{pickoff_step, stop_change};
 use super::strange::{Stranger, strangers};
-use super::weigh::{Weighed, best, caution, holds, weigh};
+use super::weigh::{Weighed, best, holds, moves_freely, weigh};
 use crate::fit::{Fit, Problem, Search};
 
 /// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be
@@ -46,7 +46,7 @@ pub(crate) struct Limits {
 impl Limits {
     pub(crate) fn of(problem: &Problem) -> Self {
         let limits = if problem.turns_mostly { TURNING } else { MOVING };
-        let wary = if problem.record.comes_near_a_stop() || problem.turns_mostly { WARY } else { 1.0 };
+        let wary = if moves_freely(problem) { 1.0 } else { WARY };
         Self { strange: wary * limits.strange, ..limits }
     }
 }
@@ -158,8 +158,8 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let probabilities = Probabilities::new(&sets);
     let limits = Limits::of(problem);
     let worthy = best(&sets, |set| set.nats - set.cost).map(|best| probabilities.fuller(&sets, best));
-    let freely = || caution(problem) <= 1.0;
-    let worthy = worthy.or_else(|| probabilities.rather_than_nothing(&sets).filter(|_| freely()));
+    let rather = || probabilities.rather_than_nothing(&sets).filter(|_| moves_freely(problem));
+    let worthy = worthy.or_else(rather);
     let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
     let shown = || {
         nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange)

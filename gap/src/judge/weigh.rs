@@ -117,12 +117,19 @@ fn costs(problem: &Problem, set: &[usize]) -> (f64, f64) {
     costs_of(&effects, caution(problem))
 }
 
+/// Whether the platform neither rests, its bearing turning around most of the time, nor comes near a stop.
+pub(crate) fn moves_freely(problem: &Problem) -> bool {
+    !problem.turns_mostly && !problem.record.comes_near_a_stop()
+}
+
 /// How much more an effect must bring in this log than where the platform moves freely.
 pub(crate) fn caution(problem: &Problem) -> f64 {
-    match (problem.turns_mostly, problem.record.comes_near_a_stop()) {
-        (true, _) => TURNING,
-        (false, true) => AFTER_STOP,
-        (false, false) => 1.0,
+    if moves_freely(problem) {
+        1.0
+    } else if problem.turns_mostly {
+        TURNING
+    } else {
+        AFTER_STOP
     }
 }
 

@@ -58,9 +58,10 @@ const EXACTLY: f64 = 1e-6;
 
 /// Holds the nominal parameters that are known to be good where the model has them.
 pub(super) fn hold(model: &mut AxisModel) {
+    let trusted = ["inertia", "viscous_friction", "friction_level"].map(|name| model.trusts(name));
     let AxisTolerance { inertia, viscous, coulomb } = &mut model.tolerance;
-    for (name, tolerance) in [("inertia", inertia), ("viscous_friction", viscous), ("friction_level", coulomb)] {
-        if model.known_good.iter().any(|good| good == name) {
+    for (tolerance, trusted) in [inertia, viscous, coulomb].into_iter().zip(trusted) {
+        if trusted {
             *tolerance = 0.0;
         }
     }
