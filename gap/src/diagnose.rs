@@ -3,7 +3,7 @@
 use gimbal_log::Log;
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Fit, Known, Tried, raw_residual, without};
+use crate::fit::{Fit, Known, Tried, without};
 use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, READ_OFF, Shrink, Spread, Verdict, Yardstick, bounds_hit,
     correlations, curve, decide, detectable, free_running, one_step, portrait, shrink,
@@ -44,6 +44,8 @@ pub struct Diagnosis {
     pub detectable: Vec<Detectable>,
     /// Spectra of the residual: nominal and fitted, channel by channel.
     pub spectra: [Vec<Spectrum>; 2],
+    /// Measured less predicted, nominal and fitted, channel by channel; after a stop from the state that the log shows.
+    pub residuals: [Vec<Vec<f64>>; 2],
     /// The fit that was chosen, or that of the nominal parameters.
     pub fit: Option<Fit>,
     /// What is left, where something is.
@@ -140,7 +142,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         fit = search.null;
     }
     let period_s = record.inputs.period_s;
-    let [before, after] = [&shrink.nominal, &fit.prediction].map(|prediction| raw_residual(record, prediction));
+    let [before, after] = [&shrink.nominal, &fit.prediction].map(|prediction| problem.residual(prediction));
     let spectra = [&before, &after].map(|residual| {
         let of = |place: usize| {
             Spectrum::new(&residual[place], &record.channels[place].valid, problem.noise[place], period_s)
@@ -212,6 +214,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         shrink: Some(shrink),
         detectable,
         spectra,
+        residuals: [before, after],
         fit: Some(fit),
         portrait,
         free_running,
@@ -241,7 +244,7 @@ fn begins_wrong(Settled { problem, search, .. }: &Settled) -> bool {
 
 /// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.
 fn contradicted(decision: &mut Decision, shrink: &Shrink) -> bool {
-    let beyond = |times: f64| shrink.signals.iter().all(|signal| signal.after > times * signal.noise_floor);
+    let beyond = |times: f64| shrink.signals.iter().all(|signal| signal.fitted > times * signal.noise_floor);
     let nothing_gone = shrink.signals.iter().all(|signal| signal.ci95_percent[0] <= 0.0);
     let contradicted = match decision.verdict {
         Verdict::NoGap => beyond(NO_NOISE),
@@ -249,7 +252,7 @@ fn contradicted(decision: &mut Decision, shrink: &Shrink) -> bool {
         _ => decision.found.iter().any(|own| !READ_OFF.contains(&own.effect)) && nothing_gone && beyond(NOTHING_GONE),
     };
     if contradicted && !shrink.signals.is_empty() {
-        let least = shrink.signals.iter().map(|signal| signal.after / signal.noise_floor).fold(f64::MAX, f64::min);
+        let least = shrink.signals.iter().map(|signal| signal.fitted / signal.noise_floor).fold(f64::MAX, f64::min);
         decision.notes.push(format!(
             "what is left is at least {least:.0} times the white noise of every sensor, and nothing of the library takes it away"
         ));
@@ -277,6 +280,7 @@ fn refused(record: Record) -> Diagnosis {
         shrink: None,
         detectable: Vec::new(),
         spectra: [Vec::new(), Vec::new()],
+        residuals: [Vec::new(), Vec::new()],
         fit: None,
         portrait: None,
         free_running: Vec::new(),

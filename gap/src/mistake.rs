@@ -7,7 +7,6 @@
 
 use gimbal_model_file::ModelFile;
 
-use crate::fit::raw_residual;
 use crate::judge::{Verdict, decide};
 use crate::record::Record;
 use crate::settle::{Settled, settled};
@@ -32,7 +31,7 @@ fn left(Settled { problem, search, .. }: &Settled) -> f64 {
         let kept = || residual.iter().zip(valid).filter(|(_, valid)| **valid).map(|(value, _)| value * value);
         (kept().sum::<f64>() / kept().count().max(1) as f64).sqrt()
     };
-    let residuals = raw_residual(record, &search.closest().prediction);
+    let residuals = problem.residual(&search.closest().prediction);
     let masks = record.channels.iter().map(|channel| &channel.valid);
     residuals.into_iter().zip(masks).map(rms).map(|rms| rms.max(f64::MIN_POSITIVE).ln()).sum()
 }

@@ -6,7 +6,7 @@
 
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Effort, Fit, Ground, Known, Problem, Search, Set, ended, look, null, raw_residual, rebase, refine};
+use crate::fit::{Effort, Fit, Ground, Known, Problem, Search, Set, ended, look, null, rebase, refine};
 use crate::record::Record;
 
 /// A fit may leave this much of the noise that was expected, and no less.
@@ -101,7 +101,7 @@ impl<'a> Measured<'a> {
     /// Under the noise that a fit leaves.
     fn again(self, best: &Fit) -> Self {
         let Self { ground, problem, nominal, more, .. } = self;
-        let raw = |fit: &Fit| raw_residual(problem.record, &fit.prediction);
+        let raw = |fit: &Fit| problem.residual(&fit.prediction);
         let known = Some(Known { noise: raw(best), gap: raw(&nominal), platform: best.into() });
         // what is not needed any more is most of the memory
         drop(problem);

@@ -4,7 +4,7 @@ use super::Columns;
 use super::signals::{Kept, difference, peak, scaled};
 use crate::library::{Candidate, Nuisance, apply};
 use crate::record::{Record, Signal};
-use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
+use crate::simulate::{Begin, Physics, Prediction, Push, Variant, predict_each};
 
 /// Places of the beginning that are unknown, and their standard deviations.
 const STATE_SIGMA: [f64; 10] = [0.02, 2e-4, 0.1, 0.1, 3.0, 3.0, 3.0, 1e-2, 1e-2, 1.0];
@@ -31,8 +31,7 @@ impl Draft<'_> {
     pub(crate) fn columns(&self, nuisances: &[Nuisance], candidates: &[Candidate]) -> (Columns, Vec<Kept>, Vec<f64>) {
         let mut columns = Columns { begin: 0, nuisances: nuisances.len(), first: Vec::new() };
         let mut sigma = Vec::new();
-        let states: Vec<usize> =
-            (0..10).filter(|&state| state != 9 || self.record.channel(Signal::GimbalAngle).is_some()).collect();
+        let states = self.states();
         columns.begin = states.len();
         let mut variants: Vec<(Variant, f64)> = states.iter().map(|&state| self.begun(state)).collect();
         sigma.extend(states.iter().map(|&state| self.state_sigma(state)));
@@ -49,6 +48,24 @@ impl Draft<'_> {
         }
         let all = self.differences(variants);
         (columns, all, sigma)
+    }
+
+    /// Places of the state that show.
+    fn states(&self) -> Vec<usize> {
+        (0..10).filter(|&state| state != 9 || self.record.channel(Signal::GimbalAngle).is_some()).collect()
+    }
+
+    /// What each place of the state does that is off by its standard deviation at some rows.
+    pub(crate) fn pushed(&self, rows: &[usize]) -> Vec<Kept> {
+        let pushed = |state: usize| {
+            let mut by = [0.0; 10];
+            by[state] = STATE_STEP * self.state_sigma(state);
+            Variant { pushed: Some(Push { rows, by }), ..self.variant(self.base.clone()) }
+        };
+        let variants: Vec<Variant> = self.states().into_iter().map(pushed).collect();
+        predict_each(&variants, &self.record.inputs, |_, moved| {
+            Kept::new(&scaled(difference(self.record, &moved, self.nominal, STATE_STEP), self.over_noise))
+        })
     }
 
     /// How far a place of the beginning may be from where the log seems to begin. The slow section remembers what
@@ -76,7 +93,7 @@ impl Draft<'_> {
     }
 
     fn variant(&self, physics: Physics) -> Variant<'static> {
-        Variant { physics, begin: self.begin.clone(), rate_radps: None, rows: usize::MAX }
+        Variant { physics, begin: self.begin.clone(), rate_radps: None, pushed: None, rows: usize::MAX }
     }
 
     /// A candidate's probes, and what their differences are divided by.

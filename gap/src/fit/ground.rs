@@ -210,15 +210,16 @@ impl<'a> Ground<'a> {
         let turning = &remembered(turns);
         let (plans, shapes) = (&self.plans, &self.shapes);
         let behind = Loop { plans, shapes, turning, turning_noise, rate_noise, period_s };
-        let whitener = Whitener::new(rest, &self.valid, behind);
-        if mostly(turns) {
-            return whitener;
-        }
         let turning =
             |base, begin, nominal| Turning { record, base, begin, nominal, turns, scaled: &self.over_noise }.turned();
         let as_fitted = platform.map(|own| turning(&own.physics, &own.begin, &own.prediction));
         let turned =
             as_fitted.as_ref().unwrap_or_else(|| self.turned.get_or_init(|| turning(base, &self.begin, nominal)));
+        let rest = &turned.released().without(rest);
+        let whitener = Whitener::new(rest, &self.valid, behind);
+        if mostly(turns) && turned.is_empty() {
+            return whitener;
+        }
         // what the turns do is no noise of any frequency: that is measured again without it
         let first = Slips::new(turned, record, rest, |signals| whitener.filter(signals));
         let whitener = whitener.with_slips(first).measured_again(rest, behind);

@@ -138,7 +138,7 @@ impl<'a> Hypothesis<'a> {
 
     /// Some rows of it, as one of many.
     pub(crate) fn variant(&self, point: &Point, rows: usize) -> Variant<'static> {
-        Variant { physics: self.physics(point), begin: self.begin(point), rate_radps: None, rows }
+        Variant { physics: self.physics(point), begin: self.begin(point), rate_radps: None, pushed: None, rows }
     }
 
     /// Prediction and whitened residual at a point.

@@ -16,6 +16,7 @@ mod problem;
 mod pull;
 mod refine;
 mod refit;
+mod release;
 mod resonance;
 mod rest;
 mod ripple;

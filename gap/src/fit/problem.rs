@@ -8,11 +8,11 @@ use super::ground::Ground;
 use super::normal::{gram, narrow, products, slices};
 use super::path::Path;
 use super::pull::Pull;
-use super::signals::{Kept, Signals, of_channel, scaled};
+use super::signals::{Kept, Signals, of_channel, residual, scaled};
 use super::{Fit, Whitener};
 use crate::library::{Candidate, Nuisance};
 use crate::record::{Record, rough, tails};
-use crate::simulate::{Begin, Physics};
+use crate::simulate::{Begin, Physics, Prediction};
 
 /// Time blocks.
 pub const BLOCKS: usize = 10;
@@ -88,6 +88,17 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn new(record: &'a Record, model: &ModelFile) -> Self {
         Ground::new(record, model).problem(None)
+    }
+
+    /// Measured less predicted, each stop left as the log shows that it was.
+    pub(crate) fn residual(&self, prediction: &Prediction) -> Signals {
+        let own = residual(self.record, prediction);
+        let released = self.whitener.slips().released();
+        if released.is_empty() {
+            return own;
+        }
+        let over: Vec<f64> = self.noise.iter().map(|noise| 1.0 / noise).collect();
+        scaled(released.without(&scaled(own, &over)), &self.noise)
     }
 
     /// With its sensitivities, from those that are not whitened.

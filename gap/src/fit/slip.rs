@@ -18,9 +18,11 @@
 
 use rayon::prelude::*;
 
+use super::draft::Draft;
 use super::normal::narrow;
+use super::release::Released;
 use super::signals::{Kept, Signals, difference, scaled};
-use super::turning::{SLOWLY, at_once};
+use super::turning::{SLOWLY, at_once, mostly};
 use super::vectors::take_along;
 use crate::record::{RateNoise, Record};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
@@ -34,6 +36,8 @@ const AFTER: usize = 1000;
 const STEP: f64 = 0.02;
 /// Share of its square that a block's ends are cut at.
 const NOTHING: f64 = 1e-7;
+/// The same, over the variance of the noise.
+const NOTHING_AT_ALL: f64 = 1e-4;
 /// Predictions that are held at a time.
 const TOGETHER: usize = 16;
 /// A block that adds less than this to the variance of the noise is none.
@@ -49,7 +53,11 @@ type Block = std::ops::Range<usize>;
 
 /// What whitens the blocks.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Slips(Vec<Pulse>);
+pub(crate) struct Slips {
+    pulses: Vec<Pulse>,
+    /// What stops leave behind, which is among the pulses.
+    released: Released,
+}
 
 #[derive(Debug, Clone)]
 struct Pulse {
@@ -68,6 +76,8 @@ struct Pulse {
 pub(crate) struct Turned {
     blocks: Vec<Block>,
     moved: Vec<(Vec<usize>, Kept)>,
+    /// What stops leave behind.
+    released: Released,
 }
 
 /// What blocks are made from.
@@ -85,7 +95,7 @@ pub(crate) struct Turning<'a> {
 impl Slips {
     /// Whitens samples of all channels, row after row.
     pub(crate) fn apply(&self, whitened: &mut [f64]) {
-        self.0.iter().for_each(|pulse| pulse.apply(0, whitened));
+        self.pulses.iter().for_each(|pulse| pulse.apply(0, whitened));
     }
 
     /// From the blocks as each shows after the filter of frequencies, of the size that a residual speaks for.
@@ -95,8 +105,10 @@ impl Slips {
         residual: &Signals,
         filter: impl Fn(&Signals) -> Vec<f64> + Sync,
     ) -> Self {
+        let none = Self { pulses: Vec::new(), released: turned.released.clone() };
+        let released = none.released.shown(&filter);
         if turned.blocks.is_empty() {
-            return Self::default();
+            return none.with(&released, 1.0);
         }
         let residual = filter(residual);
         let mut shown = turned.shown(record.channels.len(), filter);
@@ -109,7 +121,8 @@ impl Slips {
         let mut tried: Vec<(f64, Self)> = Vec::new();
         let mut least = f64::MAX;
         for size in std::iter::successors(Some(1.0), |size| Some(SMALLER * size)).take(SIZES) {
-            let slips = Self::of_size(&shown, size);
+            // the longer ones last: what is narrow stays so
+            let slips = none.clone().with(&shown, size).with(&released, 1.0);
             let unlikely = slips.unlikely(&residual);
             least = least.min(unlikely);
             tried.push((unlikely, slips));
@@ -126,25 +139,38 @@ impl Slips {
         let mut whitened = filtered.to_vec();
         self.apply(&mut whitened);
         let square: f64 = whitened.iter().map(|value| value * value).sum();
-        square + self.0.iter().map(|pulse| (1.0 + pulse.square).ln()).sum::<f64>()
+        square + self.pulses.iter().map(|pulse| (1.0 + pulse.square).ln()).sum::<f64>()
     }
 
-    fn of_size(shown: &[(usize, Vec<f64>)], size: f64) -> Self {
-        let mut slips = Self::default();
+    /// What stops leave behind.
+    pub(crate) fn released(&self) -> &Released {
+        &self.released
+    }
+
+    /// More of them, so many times as large.
+    fn with(mut self, shown: &[(usize, Vec<f64>)], size: f64) -> Self {
         for (first, values) in shown {
             let (first, mut values) = (*first, values.iter().map(|value| size * value).collect::<Vec<f64>>());
             // what the blocks before it leave
-            for pulse in &slips.0 {
+            for pulse in &self.pulses {
                 pulse.apply(first, &mut values);
             }
             let square: f64 = values.iter().map(|value| value * value).sum();
             if square > LEAST {
-                let (ends, share) = (over(&values, NOTHING * square), (1.0 - 1.0 / (1.0 + square).sqrt()) / square);
-                slips.0.push(Pulse { first: first + ends.start, values: narrow(&values[ends]), share, square });
+                let share = (1.0 - 1.0 / (1.0 + square).sqrt()) / square;
+                let (begins, values) = over_nothing(&values);
+                self.pulses.push(Pulse { first: first + begins, values: narrow(&values), share, square });
             }
         }
-        slips
+        self
     }
+}
+
+/// Samples over the noise without the ends that are nothing, and where they begin.
+pub(super) fn over_nothing(values: &[f64]) -> (usize, Vec<f64>) {
+    let square: f64 = values.iter().map(|value| value * value).sum();
+    let ends = over(values, (NOTHING * square).min(NOTHING_AT_ALL));
+    (ends.start, values[ends].to_vec())
 }
 
 /// Without the ends whose squares come to no more than this.
@@ -176,7 +202,7 @@ impl Pulse {
 
 impl Turning<'_> {
     fn blocks(&self) -> Vec<Block> {
-        if self.record.rate_noise.rms_radps < 1e-9 {
+        if self.record.rate_noise.rms_radps < 1e-9 || mostly(self.turns) {
             return Vec::new();
         }
         let least = if at_once(self.turns) { 1 } else { SLOWLY };
@@ -211,6 +237,7 @@ impl Turning<'_> {
                     physics: physics.clone(),
                     begin: begin.clone(),
                     rate_radps: Some(rate_radps),
+                    pushed: None,
                     rows: usize::MAX,
                 })
                 .collect();
@@ -218,13 +245,25 @@ impl Turning<'_> {
                 Kept::new(&scaled(difference(self.record, &moved, self.nominal, step), self.scaled))
             }));
         }
-        Turned { blocks, moved: groups.into_iter().zip(moved).collect() }
+        let draft = Draft {
+            record: self.record,
+            base: self.base,
+            begin: self.begin,
+            nominal: self.nominal,
+            over_noise: self.scaled,
+        };
+        Turned { blocks, moved: groups.into_iter().zip(moved).collect(), released: Released::new(&draft) }
     }
 }
 
 impl Turned {
     pub(crate) fn is_empty(&self) -> bool {
-        self.blocks.is_empty()
+        self.blocks.is_empty() && self.released.is_empty()
+    }
+
+    /// What stops leave behind.
+    pub(crate) fn released(&self) -> &Released {
+        &self.released
     }
 
     /// Each block's samples after the filter, and where they begin.

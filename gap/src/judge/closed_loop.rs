@@ -19,7 +19,7 @@ use crate::fit::Fit;
 use crate::record::{Channel, Record, Signal};
 use crate::simulate::{Inputs, Physics, turned};
 
-/// Not scored [s].
+/// Not scored, at the beginning and after a stop [s].
 const COMES_IN_S: f64 = 3.0;
 /// Local error of the plant's steps: far below the sensors' noise.
 const TOLERANCE: f64 = 1e-6;
@@ -96,10 +96,13 @@ pub(crate) fn in_step(record: &Record, residuals: &[Vec<f64>]) -> Vec<f64> {
     residuals.iter().zip(&record.channels).map(of).collect()
 }
 
-/// Rows of a channel that count once a run has come into step.
+/// Rows of a channel that count once a run has come into step, at the beginning and after a stop.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
 fn counted<'a>(record: &'a Record, channel: &'a Channel) -> impl Iterator<Item = usize> + 'a {
-    let in_step = |&k: &usize| channel.valid[k] && k as f64 * record.inputs.period_s >= COMES_IN_S;
-    (0..record.rows()).filter(in_step)
+    let rows = (COMES_IN_S / record.inputs.period_s).ceil() as usize;
+    let comes_in =
+        move |k: usize| k < rows || record.after_stops().iter().any(|free| free.contains(&k) && k < free.start + rows);
+    (0..record.rows()).filter(move |&k| channel.valid[k] && !comes_in(k))
 }
 
 fn index(signal: Signal) -> usize {

@@ -1,7 +1,7 @@
 //! The friction curve as the log has it: the fitted friction and what the motor torque has beside the prediction, in
 //! bins of the bearing's rate, with two standard errors to either side.
 
-use crate::fit::{Fit, Problem, raw_residual};
+use crate::fit::{Fit, Problem};
 use crate::record::Signal;
 use crate::simulate::Prediction;
 
@@ -32,7 +32,7 @@ pub fn curve(problem: &Problem, fit: &Fit, nominal: &Prediction) -> Vec<CurvePoi
     let Some(place) = record.channels.iter().position(|channel| channel.signal == Signal::MotorTorque) else {
         return Vec::new();
     };
-    let residual = &raw_residual(record, &fit.prediction)[place];
+    let residual = &problem.residual(&fit.prediction)[place];
     let valid = &record.channels[place].valid;
     let rate = record.inputs.slip_radps(&fit.prediction);
     let mut order: Vec<usize> = (0..record.rows()).filter(|&k| valid[k]).collect();

@@ -7,7 +7,7 @@ use super::left_over::left_over;
 use super::probability::{Probabilities, SetProbability};
 use super::samples::{pickoff_step, stop_change};
 use super::strange::{Stranger, strangers};
-use super::weigh::{Weighed, best, holds, moves_freely, weigh};
+use super::weigh::{Weighed, best, caution, holds, moves_freely, weigh};
 use crate::fit::{Fit, Problem, Search};
 
 /// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be
@@ -24,8 +24,8 @@ const POSSIBLE: f64 = 0.002;
 const TURNING: Limits = Limits { left_over: 24.0, left_over_scale: 2.0, strange: 30.0, strange_scale: 2.5 };
 /// The same where it moves one way for long.
 const MOVING: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 23.0, strange_scale: 1.5 };
-/// How much more torques of no effect must take after a stop, and where the bearing turns around most of the time: a wrong
-/// beginning, and the noise of the rate, are like some of them.
+/// How much more torques of no effect must take where the bearing turns around most of the time: the noise of the rate is
+/// like some of them.
 const WARY: f64 = 1.6;
 /// Probability of something unknown beside what the samples show by themselves.
 const SHOWN: f64 = 0.05;
@@ -46,7 +46,7 @@ pub(crate) struct Limits {
 impl Limits {
     pub(crate) fn of(problem: &Problem) -> Self {
         let limits = if problem.turns_mostly { TURNING } else { MOVING };
-        let wary = if moves_freely(problem) { 1.0 } else { WARY };
+        let wary = if problem.turns_mostly { WARY } else { caution(problem) };
         Self { strange: wary * limits.strange, ..limits }
     }
 }

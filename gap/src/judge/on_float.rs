@@ -23,6 +23,7 @@ pub(super) fn columns(problem: &Problem, fit: &Fit, drifts_radps: &[Vec<f64>]) -
         physics: fit.physics.clone(),
         begin: fit.begin.clone(),
         rate_radps: Some(rate_radps),
+        pushed: None,
         rows: usize::MAX,
     };
     let variants: Vec<Variant> = rates.iter().map(|rates| variant(&rates[..])).collect();

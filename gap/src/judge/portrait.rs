@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 use nalgebra::DVector;
 
 use super::weigh::names;
-use crate::fit::{Fit, Problem, drive, raw_residual, slices, solve};
+use crate::fit::{Fit, Problem, drive, slices, solve};
 use crate::place::{Band, Regime, Spectrum, block_shares, regimes};
 use crate::record::Signal;
 
@@ -60,7 +60,7 @@ pub struct Portrait {
 pub fn portrait(problem: &Problem, fit: &Fit) -> Portrait {
     let record = problem.record;
     let period_s = record.inputs.period_s;
-    let raw = raw_residual(record, &fit.prediction);
+    let raw = problem.residual(&fit.prediction);
     let spectra: Vec<Spectrum> = raw
         .iter()
         .zip(&record.channels)

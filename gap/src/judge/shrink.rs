@@ -3,7 +3,7 @@
 //! The interval is that of the model in the report, which was fitted on all blocks: it does no worse than what half of
 //! them led to on the other half, and no better than it does on what it was fitted to. Both ends are resampled.
 
-use crate::fit::{BLOCKS, Fit, Problem, raw_residual, refit};
+use crate::fit::{BLOCKS, Fit, Problem, refit};
 use crate::record::Signal;
 use crate::simulate::{Prediction, predict};
 
@@ -27,7 +27,9 @@ pub struct ShrinkSignal {
     pub noise_floor: f64,
     /// What falls away of what is above the noise.
     pub reduction_percent: f64,
-    /// Its 95 % interval.
+    /// The rms that the fit leaves where it was fitted.
+    pub fitted: f64,
+    /// The reduction's 95 % interval.
     pub ci95_percent: [f64; 2],
 }
 
@@ -49,13 +51,13 @@ pub struct Shrink {
 pub fn shrink(problem: &Problem, fit: &Fit) -> Shrink {
     let record = problem.record;
     let nominal = predict(&problem.base, &record.inputs, &fit.begin, usize::MAX);
-    let before = raw_residual(record, &nominal);
+    let before = problem.residual(&nominal);
     let odd: Vec<usize> = (0..BLOCKS).filter(|block| block % 2 == 1).collect();
     let even: Vec<usize> = (0..BLOCKS).filter(|block| block % 2 == 0).collect();
     // fitted without the odd blocks, scored on them, and the other way round
     let folds: [Prediction; 2] = rayon::join(|| refit(problem, fit, &odd), || refit(problem, fit, &even)).into();
-    let residuals = folds.each_ref().map(|prediction| raw_residual(record, prediction));
-    let fitted = raw_residual(record, &fit.prediction);
+    let residuals = folds.each_ref().map(|prediction| problem.residual(prediction));
+    let fitted = problem.residual(&fit.prediction);
     let rows = record.rows();
     let signals = record
         .channels
@@ -95,6 +97,7 @@ pub fn shrink(problem: &Problem, fit: &Fit) -> Shrink {
                 before: (all.before / all.count.max(1.0)).sqrt(),
                 after: (all.after / all.count.max(1.0)).sqrt(),
                 noise_floor: floor,
+                fitted: (all.fitted / all.count.max(1.0)).sqrt(),
                 reduction_percent: all.reduction_percent(all.after, floor),
                 ci95_percent: [quantile(after, low), quantile(after, high).max(quantile(fitted, high))],
             }

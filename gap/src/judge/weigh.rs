@@ -11,8 +11,8 @@ use crate::library::{NAMED, releases};
 pub(crate) const COST_OF_SHIFT: f64 = 15.0;
 /// How much more where the bearing turns around most of the time: its friction is as good as unknown there.
 const TURNING: f64 = 2.0;
-/// The same after a stop: how the float came off it is not known to its noise.
-const AFTER_STOP: f64 = 1.6;
+/// The same after a stop: what follows one hangs on it by more than a line.
+const AFTER_STOP: f64 = 1.25;
 /// Evidence from which on an effect is likelier than not, from logs with open answers [nats].
 const RARE: f64 = 7.5;
 pub(crate) const RARE_SHIFT: f64 = 5.0;

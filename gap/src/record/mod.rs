@@ -28,8 +28,14 @@ const SHORTEST_S: f64 = 6.0;
 /// Least rms change of the vehicle rate [rad/s] and of the acceleration [m/s2] that excite anything.
 const LEAST_RATE_RADPS: f64 = 1.5e-3;
 const LEAST_ACCEL_MPS2: f64 = 0.1;
-/// How long after a stop the way there may still show: two seconds left a loop 7 % off, by eight standard errors [s].
-const SETTLES_S: f64 = 3.0;
+/// How long before a stop a platform that is a little off may be on it already, and how long after it what follows is not in
+/// proportion to what it was let go with [s].
+const COMES_S: f64 = 0.02;
+const SETTLES_S: f64 = 0.5;
+/// Shortest time away from a stop that is worth the ten unknowns of its beginning [s].
+const WORTH_S: f64 = 0.3;
+/// Most of them; shorter ones are left out first.
+const MOST_RUNS: usize = 32;
 /// Shares of the nominal stop between which the float may have touched it.
 const NEAR_STOP: [f64; 2] = [0.95, 1.05];
 
@@ -46,6 +52,8 @@ pub struct Record {
     pub plateau_rad: Option<f64>,
     /// The longest run of rows away from it; none where it was not reached.
     away_from_stop: Option<Range<usize>>,
+    /// Runs of rows that count after it, each to the next.
+    after_stops: Vec<Range<usize>>,
     /// Noise of the rate.
     pub rate_noise: RateNoise,
     /// What makes a diagnosis impossible, in words.
@@ -116,6 +124,7 @@ impl Record {
             channels,
             plateau_rad: None,
             away_from_stop: None,
+            after_stops: Vec::new(),
             rate_noise,
             faults,
             notes,
@@ -147,6 +156,11 @@ impl Record {
     /// Whether the float touches a stop, or may have.
     pub(crate) fn comes_near_a_stop(&self) -> bool {
         self.away_from_stop.is_some()
+    }
+
+    /// Runs of rows that count after the float was on or near a stop, each to the next.
+    pub(crate) fn after_stops(&self) -> &[Range<usize>] {
+        &self.after_stops
     }
 
     fn look_at_excitation(&mut self, length_s: f64) {
@@ -181,26 +195,45 @@ impl Record {
             }
             theta.values.iter().map(|value| value.abs() > near).collect()
         };
-        let settle = (SETTLES_S / period_s) as usize;
-        let (mut wait, mut from, mut longest) = (0, 0, 0..0);
-        for (k, on_stop) in on_stop.iter().enumerate() {
-            wait = if *on_stop { settle } else { wait.saturating_sub(1) };
-            if wait > 0 {
-                from = k + 1;
-                for channel in &mut self.channels {
-                    channel.valid[k] = false;
-                }
-            } else if k + 1 - from > longest.len() {
-                longest = from..k + 1;
-            }
+        let rows = |time_s: f64| (time_s / period_s) as usize;
+        let mut free = away(&on_stop, [COMES_S, SETTLES_S].map(rows), rows(WORTH_S));
+        if free.len() > MOST_RUNS {
+            free.sort_by_key(|free| std::cmp::Reverse(free.len()));
+            free.truncate(MOST_RUNS);
+            free.sort_by_key(|free| free.start);
         }
-        self.away_from_stop = Some(longest);
+        for channel in &mut self.channels {
+            let mut valid = vec![false; channel.valid.len()];
+            for free in &free {
+                valid[free.clone()].copy_from_slice(&channel.valid[free.clone()]);
+            }
+            channel.valid = valid;
+        }
+        self.away_from_stop = Some(free.iter().max_by_key(|free| free.len()).cloned().unwrap_or_default());
+        self.after_stops = free.into_iter().filter(|free| free.start > 0).collect();
         self.notes.push(format!(
-            "the float was {} a stop for {:.2} s; masked with {SETTLES_S} s after each",
+            "the float was {} a stop for {:.2} s; masked with {SETTLES_S} s after each, and the platform begins anew there",
             if self.plateau_rad.is_some() { "on" } else { "near" },
             on_stop.iter().filter(|on_stop| **on_stop).count() as f64 * period_s
         ));
     }
+}
+
+/// Runs of rows away from a stop: so many before it and after it are not, nor is a run of fewer than the least.
+fn away(on_stop: &[bool], [comes, settles]: [usize; 2], least: usize) -> Vec<Range<usize>> {
+    let rows = on_stop.len();
+    let mut free = Vec::new();
+    let mut from = 0;
+    for k in (0..rows).filter(|&k| on_stop[k]) {
+        if k >= from + comes + least {
+            free.push(from..k - comes);
+        }
+        from = k + 1 + settles;
+    }
+    if rows >= from + least {
+        free.push(from..rows);
+    }
+    free
 }
 
 /// Where the rows of a log stand on an even grid.
@@ -268,4 +301,23 @@ fn filled(values: &[f64]) -> Vec<f64> {
 fn deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::away;
+
+    #[test]
+    fn a_stop_takes_the_rows_around_it() {
+        let mut on_stop = vec![false; 100];
+        on_stop[30] = true;
+        on_stop[31] = true;
+        on_stop[60] = true;
+        assert_eq!(away(&on_stop, [2, 5], 10), [0..28, 37..58, 66..100]);
+        // what is too short to be worth it, and a stop that lasts to the end
+        assert_eq!(away(&on_stop, [2, 5], 25), [0..28, 66..100]);
+        on_stop[60..].fill(true);
+        assert_eq!(away(&on_stop, [2, 5], 10), [0..28, 37..58]);
+        assert_eq!(away(&[true; 20], [2, 5], 10), []);
+    }
 }

@@ -53,6 +53,7 @@ impl Record {
             channels: self.channels.iter().map(channel).collect(),
             plateau_rad: self.plateau_rad,
             away_from_stop: None,
+            after_stops: Vec::new(),
             rate_noise: self.rate_noise.clone(),
             faults: Vec::new(),
             notes,

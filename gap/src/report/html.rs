@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use super::picture::{Line, SCRIPT, Tube, chart, plot, thinned};
 use crate::diagnose::Diagnosis;
-use crate::fit::{predicted, raw_residual};
 use crate::judge::{Seen, Verdict, experiment};
 
 pub(crate) const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
@@ -36,30 +35,31 @@ pub fn html(diagnosis: &Diagnosis, log: &str) -> String {
 }
 
 fn signals(out: &mut String, diagnosis: &Diagnosis) {
-    let (Some(shrink), Some(fit)) = (&diagnosis.shrink, &diagnosis.fit) else { return };
+    let [before, after] = &diagnosis.residuals;
     let record = &diagnosis.record;
     let (period_s, first_s) = (record.inputs.period_s, record.first_s);
     let thin = |values: &[f64]| thinned(values, period_s, first_s, 1500);
-    let (before, after) = (raw_residual(record, &shrink.nominal), raw_residual(record, &fit.prediction));
     let marks: Vec<(f64, f64)> =
         diagnosis.spans.iter().map(|span| (first_s + span.from_s, first_s + span.to_s)).collect();
     let named = diagnosis.decision.as_ref().is_some_and(|decision| !decision.found.is_empty());
     let fitted = if named { "with the effects found" } else { "nominal parameters fitted" };
     let residual = if marks.is_empty() { "residual" } else { "residual, with the spans of the effects" };
-    for (place, channel) in record.channels.iter().enumerate() {
+    for (place, (channel, (before, after))) in record.channels.iter().zip(before.iter().zip(after)).enumerate() {
         let column = channel.signal.column();
         let (name, unit) = (column.name(), column.unit());
         let _ = write!(out, "<h2>{name} [{unit}]</h2>");
-        let model = predicted(channel.signal, &fit.prediction);
+        let model = |residual: &[f64]| -> Vec<f64> {
+            channel.values.iter().zip(residual).map(|(measured, residual)| measured - residual).collect()
+        };
         let lines = [
             Line { name: "measured", colour: "#888", points: thin(&channel.values) },
-            Line { name: "nominal model", colour: "#c0392b", points: thin(predicted(channel.signal, &shrink.nominal)) },
-            Line { name: fitted, colour: "#1f77b4", points: thin(model) },
+            Line { name: "nominal model", colour: "#c0392b", points: thin(&model(before)) },
+            Line { name: fitted, colour: "#1f77b4", points: thin(&model(after)) },
         ];
         out.push_str(&plot("measured against model", "time [s]", &lines, &[], false));
         let lines = [
-            Line { name: "before", colour: "#c0392b", points: thin(&before[place]) },
-            Line { name: "after", colour: "#1f77b4", points: thin(&after[place]) },
+            Line { name: "before", colour: "#c0392b", points: thin(before) },
+            Line { name: "after", colour: "#1f77b4", points: thin(after) },
         ];
         out.push_str(&plot(residual, "time [s]", &lines, &marks, false));
         let spectrum = |which: usize| -> Vec<(f64, f64)> {

@@ -12,7 +12,7 @@ use super::law::Law;
 use super::now::Now;
 use super::running::Running;
 use super::sprung::ELEMENTS;
-use super::{Begin, Inputs, Prediction};
+use super::{Begin, Inputs, Prediction, Push};
 
 /// How a full step is divided: where nothing turns around, where friction turns around slowly, and where it turns
 /// around at once or a stop or the motor's corner is near.
@@ -85,7 +85,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
 
     /// So many rows of all.
     #[inline(always)]
-    pub(super) fn run(&self, begin: [&Begin; L], rows: usize) -> [Prediction; L] {
+    pub(super) fn run(&self, begin: [&Begin; L], mut pushed: [Option<Push>; L], rows: usize) -> [Prediction; L] {
         let rows = rows.min(self.inputs.len());
         let mut out: [Prediction; L] = std::array::from_fn(|_| Prediction::zero(rows));
         let mut now = self.now(0);
@@ -95,6 +95,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
                 let next = self.now(k);
                 self.row(&mut state, &now, &next);
                 now = next;
+                state.push(&mut pushed, k, now.rate);
             }
             let theta = self.law.seen(state.x[THETA]);
             let torque = self.law.motor(self.command_nm(&state.x));

@@ -22,4 +22,4 @@ pub(crate) use chain::{ANGLES, TORQUES};
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
 pub use physics::{BuildUp, Friction, Hysteresis, Loop, Measurement, Physics, Ripple};
-pub use predict::{Begin, Prediction, Variant, predict, predict_each};
+pub use predict::{Begin, Prediction, Push, Variant, predict, predict_each};

@@ -97,14 +97,25 @@ pub struct Variant<'a> {
     pub begin: Begin,
     /// The vehicle rate in the place of that of the inputs [rad/s].
     pub rate_radps: Option<&'a [f64]>,
+    /// Where its state is pushed.
+    pub pushed: Option<Push<'a>>,
     /// Rows that are asked for.
     pub rows: usize,
+}
+
+/// A change of the state at some rows, in order.
+#[derive(Debug, Clone, Copy)]
+pub struct Push<'a> {
+    /// The rows.
+    pub rows: &'a [usize],
+    /// What is added to the state, as it stands in [`Begin`].
+    pub by: [f64; PLAIN],
 }
 
 /// Runs the physics over the inputs.
 #[must_use]
 pub fn predict(physics: &Physics, inputs: &Inputs, begin: &Begin, rows: usize) -> Prediction {
-    let variant = Variant { physics: physics.clone(), begin: begin.clone(), rate_radps: None, rows };
+    let variant = Variant { physics: physics.clone(), begin: begin.clone(), rate_radps: None, pushed: None, rows };
     let [prediction] = together([&variant], inputs);
     prediction
 }
@@ -182,13 +193,15 @@ fn run<const N: usize, const L: usize>(variants: [&Variant; L], inputs: &Inputs)
     let steps = variants.map(|own| Steps::<N>::new(&own.physics, inputs.period_s));
     let rates = variants.map(|own| own.rate_radps.unwrap_or(&inputs.rate_radps));
     let machine = Machine::new(steps.each_ref(), inputs, rates);
-    Arch::new().dispatch(Run { machine, begin: variants.map(|own| &own.begin), rows: variants[0].rows })
+    let pushed = variants.map(|own| own.pushed);
+    Arch::new().dispatch(Run { machine, begin: variants.map(|own| &own.begin), pushed, rows: variants[0].rows })
 }
 
 /// A machine that is to run with the widest vectors that there are; bits are the same with all.
 struct Run<'a, const N: usize, const L: usize> {
     machine: Machine<'a, N, L>,
     begin: [&'a Begin; L],
+    pushed: [Option<Push<'a>>; L],
     rows: usize,
 }
 
@@ -198,13 +211,13 @@ impl<const N: usize, const L: usize> WithSimd for Run<'_, N, L> {
     // a closure would be compiled for the narrowest
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.machine.run(self.begin, self.rows)
+        self.machine.run(self.begin, self.pushed, self.rows)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Begin, Prediction, Variant, predict, predict_each};
+    use super::{Begin, Prediction, Push, Variant, predict, predict_each};
     use crate::library::{apply, platform};
     use crate::simulate::{Inputs, Physics};
 
@@ -263,6 +276,7 @@ mod tests {
             physics: physics.clone(),
             begin: begin.clone(),
             rate_radps: None,
+            pushed: None,
             rows: usize::MAX,
         };
         let variants: Vec<Variant> = all.iter().map(variant).collect();
@@ -270,6 +284,35 @@ mod tests {
         assert!(together.iter().any(|own| own.on_stop.contains(&true)));
         for (index, (physics, own)) in all.iter().zip(&together).enumerate() {
             assert_eq!(bits(own), bits(&predict(physics, &inputs, &begin, usize::MAX)), "variant {index}");
+        }
+    }
+
+    #[test]
+    fn closed_form_pushed_later_is_begun_later() {
+        let (rows, later) = (1200, 200);
+        let mut base = platform(&gimbal_model_file::ModelFile::default());
+        base.config.bearing.count = 0;
+        let zero = || vec![0.0; rows];
+        let mut inputs =
+            Inputs { period_s: 1e-3, accel_mps2: [zero(), zero(), zero()], rate_radps: zero(), ..Inputs::default() };
+        inputs.complete(&base.config.bearing, 0.0);
+        let rest = Begin::at(&base, &inputs, 0.0, Some(0.0));
+        let by = [1e-3, 1e-5, 1e-3, 1e-4, 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-4];
+        let variant =
+            |begin: Begin, pushed| Variant { physics: base.clone(), begin, rate_radps: None, pushed, rows: usize::MAX };
+        let push = Push { rows: &[later, 2 * later], by };
+        let variants = [
+            variant(Begin { state: by, ..rest.clone() }, None),
+            variant(rest.clone(), Some(push)),
+            variant(rest, None),
+        ];
+        let [begun, pushed, none] =
+            predict_each(&variants, &inputs, |_, own| own.gyro_angle_rad).try_into().expect("three");
+        let peak = begun.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+        assert!(none.iter().all(|value| *value == 0.0) && pushed[..later].iter().all(|value| *value == 0.0));
+        for k in later..rows {
+            let both = begun[k - later] + if k < 2 * later { 0.0 } else { begun[k - 2 * later] };
+            assert!((pushed[k] - both).abs() < 1e-9 * peak, "row {k}: {} and {both}", pushed[k]);
         }
     }
 

@@ -1,7 +1,8 @@
 //! What changes while a machine runs.
 
+use super::Push;
 use super::cable::Stops;
-use super::chain::INPUTS;
+use super::chain::{INPUTS, PHI_RATE};
 use super::lanes::Lanes;
 use super::sprung::ELEMENTS;
 
@@ -26,6 +27,16 @@ pub(super) struct Running<const N: usize, const L: usize> {
 }
 
 impl<const N: usize, const L: usize> Running<N, L> {
+    /// What is pushed at a row, under this rate of the vehicle.
+    pub(super) fn push(&mut self, pushed: &mut [Option<Push>; L], row: usize, rate: Lanes<L>) {
+        for (lane, pushed) in pushed.iter_mut().enumerate() {
+            let Some(push) = pushed.as_mut().filter(|push| push.rows.first() == Some(&row)) else { continue };
+            push.rows = &push.rows[1..];
+            self.x.iter_mut().zip(push.by).for_each(|(x, by)| x[lane] += by);
+            self.w[lane] = rate[lane] - self.x[PHI_RATE][lane];
+        }
+    }
+
     /// One of them.
     pub(super) fn of(&self, lane: usize) -> Running<N, 1> {
         Running {
