@@ -184,7 +184,8 @@ fn over(values: &[f64], square: f64) -> std::ops::Range<usize> {
             })
             .count()
     };
-    from(&mut values.iter())..values.len() - from(&mut values.iter().rev())
+    let begins = from(&mut values.iter());
+    begins..(values.len() - from(&mut values.iter().rev())).max(begins)
 }
 
 impl Pulse {
@@ -345,5 +346,17 @@ impl RateNoise {
     fn rows_alike(&self) -> usize {
         let mean = self.pass.iter().sum::<f64>() / self.pass.len() as f64;
         (0.5 / mean.max(1e-3)).round().max(1.0) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::over_nothing;
+
+    #[test]
+    fn ends_that_are_nothing_are_left_out_and_all_where_all_is() {
+        assert_eq!(over_nothing(&[0.0, 1e-4, 2.0, 0.5, -1e-4, 0.0]), (2, vec![2.0, 0.5]));
+        assert_eq!(over_nothing(&[0.0; 3]).1, Vec::<f64>::new());
+        assert_eq!(over_nothing(&[]).1, Vec::<f64>::new());
     }
 }

@@ -23,9 +23,9 @@ const MEANINGS: [(&str, &str, f64); 9] = [
     ("cable_spring", "stiffness_nm_per_rad", 0.02),
     ("presliding", "displacement_rad", 0.1),
     ("cable_hysteresis", "displacement_rad", 0.15),
-    ("cable_hysteresis", "torque_nm", 0.1),
-    ("friction_drift", "time_constant_s", 0.15),
-    ("friction_drift", "ratio", 0.05),
+    ("cable_hysteresis", "torque_nm", 0.15),
+    ("friction_drift", "time_constant_s", 0.25),
+    ("friction_drift", "ratio", 0.08),
     ("torque_saturation", "limit_nm", 0.01),
 ];
 
