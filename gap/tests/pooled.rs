@@ -97,7 +97,7 @@ fn no_effect_is_made_of_the_chance_in_several_logs() {
         let pool = together(&diagnoses(&[], excitation, |_, _| ()));
         assert_eq!((pool.verdict, pool.named.len()), (Verdict::NoGap, 0), "{excitation:?}: {}", told(&pool));
         // what no log shows is not ruled out by taking them together
-        assert!(pool.unknown_probability >= 0.1, "{excitation:?}: {}", pool.unknown_probability);
+        assert!(pool.unknown_probability >= 0.03, "{excitation:?}: {}", pool.unknown_probability);
     }
 }
 

@@ -12,8 +12,13 @@ use crate::fit::{Fit, Problem, Search};
 
 /// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be
 /// that none of the library's is it, from logs with open answers.
-pub(crate) const UNSEEN: f64 = 0.1;
+pub(crate) const UNSEEN: f64 = 0.03;
 const SUREST: f64 = 0.92;
+/// Odds of something unknown where torques of no effect take all but what they may without being told, the power by which
+/// they grow up to there, and how probable it can be below: from logs with open answers too.
+const ODDS_AT_LIMIT: f64 = 0.9;
+const ODDS_POWER: f64 = 1.2;
+const BELOW_LIMIT: f64 = 0.47;
 /// Unknown is the verdict from here on, without and with an effect.
 pub(crate) const UNEXPLAINED: [f64; 2] = [0.5, 0.6];
 /// Share of the likeliest set's probability from which on another is not told apart from it.
@@ -175,9 +180,10 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let strange = strongest(&strangers);
     let taken = 0.5 * (search.null.square + search.null.prior - fit.square - fit.prior);
     let found = chosen.is_some();
-    let left = unknown(after, after / before.max(after).max(1e-9), limits.left_over, limits.left_over_scale, found);
+    let left =
+        unknown(past(after, limits.left_over, limits.left_over_scale), after / before.max(after).max(1e-9), found);
     let share = strange / (strange + taken).max(1e-9);
-    let unknown = left.max(unknown(strange, share, limits.strange, limits.strange_scale, found));
+    let unknown = left.max(unknown(strangeness(strange, limits.strange, limits.strange_scale), share, found));
     let mut decision = Decision {
         verdict: Verdict::NoGap,
         found: Vec::new(),
@@ -242,12 +248,23 @@ fn name(problem: &Problem, fit: &Fit, set: &Weighed, decision: &mut Decision) {
     decision.found = fit.set.0.iter().enumerate().map(found).collect();
 }
 
-/// How probable it is that no effect of the library is it: from how far what is left stands out beyond a limit, and
-/// from its share of the gap, as a large effect in another formulation leaves something too.
-pub(crate) fn unknown(stands_out: f64, share: f64, limit: f64, scale: f64, found: bool) -> f64 {
-    let stands_out = 1.0 / (1.0 + (-(stands_out - limit) / scale).exp());
+/// How probable it is that no effect of the library is it: from how probable what is left makes it, and from the share of
+/// that in the gap, as a large effect in another formulation leaves something too.
+pub(crate) fn unknown(shown: f64, share: f64, found: bool) -> f64 {
     let share = if found { share } else { 1.0 };
-    (stands_out * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES)).clamp(UNSEEN, SUREST)
+    (shown * share / (share + FORMULATION_LEAVES) * (1.0 + FORMULATION_LEAVES)).clamp(UNSEEN, SUREST)
+}
+
+/// How probable it is that a value stands out beyond a limit that is known to so much.
+pub(crate) fn past(value: f64, limit: f64, scale: f64) -> f64 {
+    1.0 / (1.0 + (-(value - limit) / scale).exp())
+}
+
+/// How probable what torques of no effect take makes something unknown [nats]: what is not enough to be told is more than
+/// nothing.
+pub(crate) fn strangeness(nats: f64, limit: f64, scale: f64) -> f64 {
+    let odds = ODDS_AT_LIMIT * (nats / limit).max(0.0).powf(ODDS_POWER);
+    past(nats, limit, scale).max((odds / (1.0 + odds)).min(BELOW_LIMIT))
 }
 
 /// What the samples show by themselves: a stop elsewhere, as the pick-off reads it, and a grid of angles.

@@ -29,7 +29,7 @@ pub use closed_loop::{Yardstick, free_running, one_step};
 pub use correlation::{Correlation, bounds_hit, correlations};
 pub use curve::{CurvePoint, curve};
 pub use decide::{Decision, Found, Verdict, decide};
-pub(crate) use decide::{Limits, UNEXPLAINED, UNSEEN, rivals, unknown};
+pub(crate) use decide::{Limits, UNEXPLAINED, UNSEEN, past, rivals, strangeness, unknown};
 pub use detectable::{Detectable, Seen, detectable};
 pub use experiment::experiment;
 pub(crate) use left_over::left_over;

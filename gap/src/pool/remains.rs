@@ -8,7 +8,7 @@
 use super::climb::Fitted;
 use super::material::Material;
 use crate::fit::stand;
-use crate::judge::{Limits, UNSEEN, left_over, strangers, unknown};
+use crate::judge::{Limits, UNSEEN, left_over, past, strangeness, strangers, unknown};
 
 /// Over all logs.
 #[derive(Debug, Clone)]
@@ -65,23 +65,22 @@ pub(super) fn remains(materials: &[Material], null: &Fitted, fitted: &Fitted, ex
     for left in &mut each {
         left.limits.strange += choice;
     }
-    let of_strange =
-        |nats: f64, limit: f64, scale: f64| unknown(nats, nats / (nats + taken).max(1e-9), limit, scale, found);
+    let of_strange = |nats: f64, shown: f64| unknown(shown, nats / (nats + taken).max(1e-9), found);
     let of_log = |left: &Left| {
         let (limits, [before, after]) = (&left.limits, left.stands_out);
         let share = after / before.max(after).max(1e-9);
-        unknown(after, share, limits.left_over, limits.left_over_scale, found).max(of_strange(
-            left.strangest(),
-            limits.strange,
-            limits.strange_scale,
-        ))
+        let left_over = past(after, limits.left_over, limits.left_over_scale);
+        let strange = left.strangest();
+        let strangers = of_strange(strange, past(strange, limits.strange, limits.strange_scale));
+        unknown(left_over, share, found).max(strangers)
     };
     let root = (each.len() as f64).sqrt();
     let highest = |of: fn(&Limits) -> f64| root * each.iter().map(|left| of(&left.limits)).fold(0.0, f64::max);
     let (limit, scale) = (highest(|limits| limits.strange), highest(|limits| limits.strange_scale));
     let most = summed(&each).into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
     let strange = most.map_or(0.0, |(_, nats)| nats);
-    let of_all = of_strange(strange, limit, scale);
+    // what is small is told by all logs together, not by the one that shows most of it by chance
+    let of_all = of_strange(strange, strangeness(strange, limit, scale));
     Remains {
         unknown: each.iter().map(of_log).fold(UNSEEN.max(of_all), f64::max),
         tells: each.iter().any(Left::tells) || strange > limit + scale,

@@ -11,7 +11,7 @@ use beyond::{names, tolerated};
 use found::{Fitted, found};
 pub use parameters::Parameter;
 pub(super) use parameters::{deviation, parameters};
-use rank::{doubt, rank};
+use rank::{Rest, doubt, rank};
 pub use shrunk::Shrunk;
 pub(super) use shrunk::{by_block, shrunk};
 
@@ -35,6 +35,8 @@ const TRIFLE: f64 = 0.01;
 const RIVAL: f64 = 0.1;
 /// A gap is one from this power over the floor on.
 const NOTABLE: f64 = 1.5;
+/// What is left is no matter of the parameters' tolerances from this many times the noise on: they have been fitted.
+const NOTICED: f64 = 5.0;
 
 /// An effect that is named.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +81,7 @@ impl Judged {
     /// A control law that leaves a notable part of the output is not the loop's: something is there that is not named.
     pub(super) fn doubt_law(&mut self, left: f64) {
         // what the balance has named may be all there is in it
-        let unknown = if self.verdict == Verdict::NoGap { doubt(1.0, 0) } else { UNEXPLAINED };
+        let unknown = if self.verdict == Verdict::NoGap { doubt(Rest::share(1.0), 0) } else { UNEXPLAINED };
         if left < LAW_LEFT || unknown <= self.unknown_probability {
             return;
         }
@@ -102,7 +104,7 @@ impl Judged {
     /// Takes back what does not carry over: what the fit leaves of a log that it did not see is no less unknown than what
     /// it leaves of its own.
     pub(super) fn carried(&mut self, left: f64) {
-        let unknown = doubt(left, 0);
+        let unknown = doubt(Rest::share(left), 0);
         if self.verdict == Verdict::NoGap || unknown <= self.unknown_probability {
             return;
         }
@@ -127,13 +129,13 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let found = found(balance, &fitted, model, &ranking, shrunk.reduction_percent);
     let alternatives = alternatives(&ranking, &names(balance, &best.members, model), &found);
     let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
-    let left = (shrunk.after.powi(2) - shrunk.noise_floor.powi(2)).max(0.0);
-    let there = (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(1e-300);
+    let rest = Rest::of(&shrunk);
     let verdict = if found.is_empty() {
-        if gap && left > 0.5 * there && !tolerated(balance, model) { Verdict::Unexplained } else { Verdict::NoGap }
+        let small = rest.over_noise < NOTICED && tolerated(balance, model);
+        if gap && rest.share > 0.5 && !small { Verdict::Unexplained } else { Verdict::NoGap }
     } else if unknown_probability > UNEXPLAINED {
         Verdict::Unexplained
-    } else if left > LEFT * there && left > NOTABLE * shrunk.noise_floor.powi(2) {
+    } else if rest.share > LEFT && rest.over_noise.powi(2) > 1.0 + NOTABLE {
         Verdict::PartlyExplained
     } else if alternatives.is_empty() {
         Verdict::Explained
@@ -144,7 +146,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let nothing_named = found.is_empty();
     let mut judged = Judged { verdict, found, ranking, alternatives, unknown_probability, shrunk, drawn: fitted.drawn };
     if verdict == Verdict::Unexplained && nothing_named {
-        judged.doubted(doubt(left / there, 0).max(unknown_probability));
+        judged.doubted(doubt(rest, 0).max(unknown_probability));
     }
     judged
 }

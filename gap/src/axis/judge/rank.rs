@@ -6,23 +6,51 @@ use super::beyond::names;
 use super::{LEFT, Ranked, Shrunk};
 use crate::axis::balance::Balance;
 use crate::axis::search::{LEAST_OF_REST, Set};
+use crate::judge::UNSEEN;
 
 /// Sets within this share of what is left are not told apart, and what is left counts as this share of all at least.
 const SAME: f64 = 0.05;
 const LEAST_SAME: f64 = 0.05;
-/// What is left makes an unknown effect as likely as not at this share.
+/// What is left makes an unknown effect as likely as not at this share beyond `LEFT`, where it is as small as the noise; and
+/// how many times the noise it is where half of that share does. What noise is not is none the less an effect for being small.
 const HALF_LEFT: f64 = 0.25;
+const OVER_NOISE: f64 = 4.0;
 /// Sets that leave nothing are wrong this often, on simulated axes of which some have what the library lacks.
 const EVEN_SO: f64 = 0.1;
 /// Kinds of effect that a log may well show at once, and what each further one leaves of the probability of the set.
 const SURE_KINDS: usize = 2;
 const EACH_KIND: f64 = 0.6;
 
+/// What is left of a gap.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rest {
+    /// Its power beyond noise, over that of the gap.
+    pub(super) share: f64,
+    /// Its root mean square over that of the noise.
+    pub(super) over_noise: f64,
+}
+
+impl Rest {
+    /// Of a gap as it shrank.
+    pub(super) fn of(shrunk: &Shrunk) -> Self {
+        let beyond = |value: f64| value.powi(2) - shrunk.noise_floor.powi(2);
+        let share = beyond(shrunk.after).max(0.0) / beyond(shrunk.before).max(1e-300);
+        Self { share, over_noise: shrunk.after / shrunk.noise_floor.max(1e-300) }
+    }
+
+    /// Such a share, of which it is not known how it compares with noise.
+    pub(super) fn share(share: f64) -> Self {
+        Self { share, over_noise: 0.0 }
+    }
+}
+
 /// Probability that it is something else, by what is left and by how many kinds of effect it took. With thirty kinds
 /// at hand, a set of many fits almost anything: each beyond the second is half as likely to be there as to make up for
 /// something that the library lacks.
-pub(super) fn doubt(left: f64, kinds: usize) -> f64 {
-    let of_rest = if left <= LEFT { EVEN_SO } else { (left / (left + HALF_LEFT)).max(EVEN_SO) };
+pub(super) fn doubt(rest: Rest, kinds: usize) -> f64 {
+    let left = (rest.share - LEFT).max(0.0);
+    let half = HALF_LEFT / (1.0 + (rest.over_noise / OVER_NOISE).powi(2));
+    let of_rest = (left / (left + half)).max(EVEN_SO);
     let known = (1.0 - of_rest) * (0..kinds.saturating_sub(SURE_KINDS)).fold(1.0, |known, _| known * EACH_KIND);
     (1.0 - known).clamp(0.005, 0.98)
 }
@@ -72,10 +100,8 @@ pub(super) fn rank(
         let sum: f64 = weights.iter().sum();
         wins.iter_mut().zip(&weights).for_each(|(wins, weight)| *wins += weight / sum);
     }
-    let left = (shrunk.after.powi(2) - shrunk.noise_floor.powi(2)).max(0.0)
-        / (shrunk.before.powi(2) - shrunk.noise_floor.powi(2)).max(1e-300);
     let kinds_named = names(balance, &best.members, model).len();
-    let unknown = if kinds_named == 0 { 0.0 } else { doubt(left, kinds_named) };
+    let unknown = if kinds_named == 0 { UNSEEN } else { doubt(Rest::of(shrunk), kinds_named) };
     let total = wins.iter().sum::<f64>() + 1.0;
     let mut ranking: Vec<Ranked> = kinds
         .into_iter()
