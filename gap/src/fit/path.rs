@@ -11,8 +11,12 @@
 //! another, a torque is in all of them.
 //!
 //! ```text
-//! agreement = sum Re(D_a D_b*) / sqrt(1/2 sum |D_a D_b|^2)       D_a = (G_a / sqrt(P_a))* R_a, lines of one channel's drive
+//! agreement = sum (Re(D_a D_b*) - N s^2 g_a g_b) / sqrt(1/2 sum |D_a D_b|^2)
+//! D_a = (G_a / sqrt(P_a))* R_a, lines of one channel's drive        g_a = |G_a|^2 / P_a
 //! ```
+//!
+//! where N rows of a torque of deviation s, row by row at random, are known to be there: noise of what is logged of the
+//! platform's inputs.
 
 use realfft::num_complex::Complex;
 
@@ -77,16 +81,19 @@ impl Path {
     }
 
     /// How far the channels agree, two by two, on a torque that is slower than so much: in standard deviations of what
-    /// noises that know nothing of one another come to.
-    pub(crate) fn agreement(&self, whitener: &Whitener, whitened: &[f64], to_hz: f64) -> f64 {
+    /// noises that know nothing of one another come to, beyond a torque that is there at every row at random.
+    pub(crate) fn agreement(&self, whitener: &Whitener, whitened: &[f64], to_hz: f64, noise_nm: f64) -> f64 {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
         let count = (to_hz / self.step_hz) as usize;
         let driven: Vec<Vec<Complex<f64>>> = self.driven(whitener, whitened).collect();
+        let known = noise_nm.powi(2) * self.rows as f64;
         let (mut sum, mut square) = (0.0, 0.0);
         for (place, one) in driven.iter().enumerate() {
-            for other in &driven[..place] {
-                for product in one.iter().zip(other).skip(1).take(count).map(|(a, b)| a * b.conj()) {
-                    sum += product.re;
+            for (earlier, other) in driven[..place].iter().enumerate() {
+                for line in 1..one.len().min(count + 1) {
+                    let product = one[line] * other[line].conj();
+                    sum +=
+                        product.re - known * self.lines[place][line].norm_sqr() * self.lines[earlier][line].norm_sqr();
                     square += 0.5 * product.norm_sqr();
                 }
             }

@@ -40,7 +40,7 @@ pub(crate) fn left_over(problem: &Problem, whitened: &[f64]) -> f64 {
 }
 
 /// Rows away from those at which the bearing turns around.
-fn steady(turns: &[bool]) -> Vec<bool> {
+pub(super) fn steady(turns: &[bool]) -> Vec<bool> {
     let mut steady = vec![true; turns.len()];
     for row in (0..turns.len()).filter(|&row| turns[row]) {
         let around = row.saturating_sub(BEFORE)..(row + AFTER).min(turns.len());

@@ -8,22 +8,31 @@
 //! Of n torques, chance gives a gain of n, with a scatter of sqrt(2 n).
 //!
 //! A torque at random depends on nothing; that all sensors show the same one tells it from their noise, whatever the
-//! spectra of that are: its gain is the square of their agreement.
+//! spectra of that are: its gain is the square of their agreement, away from where the bearing turns around, as noise of
+//! the rate is a torque there.
 
 use std::fmt;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::left_over::steady;
 use super::torques::groups;
 use crate::fit::{Fit, Linear, Problem, gram, slices, solve};
+use crate::record::rough;
 
 /// Amplitude that a torque must have beside those before it, over its own: of torques that are nearly alike a difference as
 /// large as nothing makes them takes what no torque does.
 const APART: f64 = 0.05;
-/// A torque that is a function of nothing, and up to where sensors may agree on one: slower than the loop [Hz].
+/// A torque that is a function of nothing, and up to where sensors may agree on one [Hz].
 const AT_RANDOM: &str = "a torque at random that several sensors show";
-const AGREED_HZ: f64 = 8.0;
+const AGREED_HZ: f64 = 32.0;
+/// Parts of the log, in one of which no vibration hides the noise of the specific force, and what that is at most at
+/// these rates [m/s^2]: 90 ug/sqrt(Hz) up to 500 Hz.
+const PARTS: usize = 20;
+const ACCEL_NOISE_MPS2: f64 = 0.02;
+/// What one nat of it counts where the bearing seldom turns around: no effect in another formulation leaves it.
+const AGREED_COUNTS: f64 = 2.0;
 /// Precision of a torque's size: none, but for what keeps equations regular.
 const FREE: f64 = 1e-9;
 
@@ -38,13 +47,15 @@ pub struct Stranger {
     pub torques: usize,
     /// What choosing them among others costs [nats].
     pub choice: f64,
+    /// What one of its nats counts beside those of functions of the state.
+    pub counts: f64,
 }
 
 impl Stranger {
-    /// Beyond chance [nats].
+    /// Beyond chance, as they count [nats].
     #[must_use]
     pub fn nats(&self) -> f64 {
-        0.5 * (self.gain - self.torques as f64) - self.choice
+        self.counts * (0.5 * (self.gain - self.torques as f64) - self.choice)
     }
 }
 
@@ -81,13 +92,34 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         .map(|group| {
             let columns = apart(group.columns(problem, fit));
             let torques = columns.len();
-            Stranger { of: group.of, gain: gain(columns) - base, torques, choice: group.choice }
+            Stranger { of: group.of, gain: gain(columns) - base, torques, choice: group.choice, counts: 1.0 }
         })
         .collect();
-    let agreement = problem.path.agreement(&problem.whitener, &fit.residual, AGREED_HZ).max(0.0);
-    strangers.push(Stranger { of: AT_RANDOM, gain: agreement.powi(2), torques: 1, choice: 0.0 });
+    let counts = if problem.turns_mostly { 1.0 } else { AGREED_COUNTS };
+    strangers.push(Stranger { of: AT_RANDOM, gain: agreement(problem, fit).powi(2), torques: 1, choice: 0.0, counts });
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
     strangers
+}
+
+/// How far the channels agree on a torque, in standard deviations, beyond what noise of the logged specific force is to
+/// the unbalance; none of it where the bearing turns around.
+fn agreement(problem: &Problem, fit: &Fit) -> f64 {
+    let mut residual = fit.residual.clone();
+    let rows = residual.chunks_exact_mut(problem.record.channels.len());
+    for (row, _) in rows.zip(steady(&problem.turns)).filter(|(_, steady)| !steady) {
+        row.fill(0.0);
+    }
+    let unbalance = &fit.physics.config.unbalance;
+    let accel_mps2 = problem.record.inputs.accel_mps2.iter();
+    let noise_mps2 = accel_mps2.map(|axis| quietest(axis)).fold(0.0, f64::max).min(ACCEL_NOISE_MPS2);
+    let noise_nm = unbalance.x_kg_m.hypot(unbalance.y_kg_m) * noise_mps2;
+    problem.path.agreement(&problem.whitener, &residual, AGREED_HZ, noise_nm).max(0.0)
+}
+
+/// Noise of a signal where it is quietest: elsewhere vibration is like noise.
+fn quietest(values: &[f64]) -> f64 {
+    let part = values.len().div_ceil(PARTS).max(1);
+    values.chunks(part).map(|part| rough(part, &vec![true; part.len()])).fold(f64::MAX, f64::min)
 }
 
 /// Columns without those that the ones before them nearly make.
@@ -109,7 +141,15 @@ fn apart(columns: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
 
 #[cfg(test)]
 mod tests {
-    use super::apart;
+    use super::{apart, quietest};
+
+    #[test]
+    fn vibration_of_most_of_a_log_is_no_noise() {
+        let noise = |k: u32| f64::from(k.wrapping_mul(2_654_435_769) >> 16) / 65_536.0 - 0.5;
+        let vibration = |k: u32| if k < 18_000 { (0.9 * f64::from(k)).sin() } else { 0.0 };
+        let values: Vec<f64> = (0..20_000).map(|k| 0.01 * noise(k) + vibration(k)).collect();
+        assert!(quietest(&values) < 0.01, "{}", quietest(&values));
+    }
 
     #[test]
     fn columns_that_others_make_are_left_out() {
