@@ -60,7 +60,7 @@ const MOST: usize = 3;
 #[must_use]
 pub fn search(problem: &mut Problem, null: Fit) -> Search {
     rebase(problem, &null);
-    look(problem, null, None).finished(problem)
+    look(problem, null, None).widened(problem).finished(problem)
 }
 
 /// Sets of effects that were fitted far enough to be compared.
@@ -71,9 +71,9 @@ pub(crate) struct Looked {
     glimpses: Vec<Glimpse>,
 }
 
-/// The first half of a search, by the sensitivities at the fit of the nominal parameters, with a fit that is known already.
+/// Single effects, by the sensitivities at the fit of the nominal parameters, beside a fit that is known already.
 pub(crate) fn look(problem: &Problem, null: Fit, known: Option<Fit>) -> Looked {
-    let (fits, glimpses) = sets(problem, &null, known);
+    let (fits, glimpses) = singles(problem, &null, known);
     Looked { null, fits, glimpses }
 }
 
@@ -83,7 +83,15 @@ impl Looked {
         closest(&self.null, &self.fits)
     }
 
-    /// The second half: what is close to the best is brought to its end before it is judged.
+    /// Pairs and triples from the best, by the same sensitivities.
+    pub(crate) fn widened(mut self, problem: &Problem) -> Self {
+        for size in 1..MOST {
+            widen(problem, &self.null, &mut self.fits, size);
+        }
+        self
+    }
+
+    /// The last part: what is close to the best is brought to its end before it is judged.
     pub(crate) fn finished(self, problem: &mut Problem) -> Search {
         let Self { null, mut fits, glimpses } = self;
         if let Some(best) = fits.first() {
@@ -124,8 +132,8 @@ pub fn null(problem: &Problem, from: Option<&Fit>) -> Fit {
     refine(problem, &Set::default(), &[], from, Effort::Thorough)
 }
 
-/// Singles, and pairs and triples from the best of them, the best first; and what singles were chosen from.
-fn sets(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<Glimpse>) {
+/// Single effects, the best first; and what they were chosen from.
+fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<Glimpse>) {
     let mut fits: Vec<Fit> = known.into_iter().filter(|fit| !fit.set.0.is_empty()).collect();
     let first = best_by_effect(problem, extensions(problem, null), usize::MAX);
     let glimpses = seen(&first);
@@ -140,27 +148,29 @@ fn sets(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<Gli
             .filter_map(|extension| extend(problem, null, extension)),
     );
     sort(problem, null, &mut fits);
-    for size in 1..MOST {
-        let seeds: Vec<&Fit> =
-            fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
-        let wider: Vec<Fit> = seeds
-            .par_iter()
-            .flat_map(|seed| {
-                let next = best_by_effect(problem, extensions(problem, seed), EXTENSIONS);
-                next.into_par_iter()
-                    .filter(|extension| promising(problem, extension))
-                    .filter_map(|extension| extend(problem, seed, &extension))
-            })
-            .chain(seeds.par_iter().filter_map(|seed| saturated(problem, seed)))
-            .collect();
-        for fit in wider {
-            if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
-                fits.push(fit);
-            }
-        }
-        sort(problem, null, &mut fits);
-    }
     (fits, glimpses)
+}
+
+/// Sets of one effect more than `size`, from the best of that size.
+fn widen(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>, size: usize) {
+    let seeds: Vec<&Fit> =
+        fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
+    let wider: Vec<Fit> = seeds
+        .par_iter()
+        .flat_map(|seed| {
+            let next = best_by_effect(problem, extensions(problem, seed), EXTENSIONS);
+            next.into_par_iter()
+                .filter(|extension| promising(problem, extension))
+                .filter_map(|extension| extend(problem, seed, &extension))
+        })
+        .chain(seeds.par_iter().filter_map(|seed| saturated(problem, seed)))
+        .collect();
+    for fit in wider {
+        if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
+            fits.push(fit);
+        }
+    }
+    sort(problem, null, fits);
 }
 
 /// The best fit may have found a way down that the nominal parameters missed: they start there once more. And whether
