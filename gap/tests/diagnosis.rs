@@ -211,6 +211,22 @@ fn a_stop_is_found_wherever_the_float_stands_on_it() {
     }
 }
 
+#[test]
+fn a_float_that_goes_past_its_stop_says_that_the_stop_is_farther() {
+    let log = log_with(Excitation::Manoeuvre, &[]);
+    let theta_rad = log.column(Column::GyroAngle).expect("the pick-off");
+    let peak_rad = theta_rad.iter().fold(0.0, |peak: f64, own| peak.max(own.abs()));
+    let mut model = ModelFile::default();
+    for (share, found) in [(0.8, vec!["stop_angle"]), (0.97, vec![])] {
+        model.config.gyro.stop_angle_rad = share * peak_rad;
+        let diagnosis = diagnose(&log, &model);
+        assert_eq!(names(&diagnosis), found, "{share}: {:#}", report(&diagnosis)["notes"]);
+        for own in &diagnosis.decision.as_ref().expect("a decision").found {
+            assert!((own.values[0] - (1.0 / share - 1.0)).abs() < 2.0 * own.errors[0], "{:?}", own.values);
+        }
+    }
+}
+
 /// What follows a stop says what it says of a platform that begins there.
 #[test]
 fn an_effect_beside_a_stop_is_named() {

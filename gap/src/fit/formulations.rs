@@ -10,8 +10,10 @@ use crate::library::NAMED;
 
 /// Formulations of an effect that are fitted.
 const FORMULATIONS: usize = 2;
-/// Displacement at which stops come nearest to Bouc-Wen's outer loop, over the one that it has (least squares).
-const STOPS_ALONG: f64 = 0.8;
+/// The other formulations of an effect: what says so, and its second value over that of the first formulation where the two
+/// come nearest to each other (least squares over a loop's outer branch; half of the excess).
+const OTHERS: [(&str, &[(f64, f64)]); 2] =
+    [("cable_hysteresis", &[(1.0, 0.8)]), ("stribeck", &[(1.0, 1.2), (2.0, 0.83)])];
 
 /// A fit with one candidate more.
 pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {
@@ -29,15 +31,18 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
     };
     let closer = |a: &Fit, b: &Fit| cost(a).total_cmp(&cost(b));
     let closest = starts.into_par_iter().map(fitted).min_by(closer)?;
-    // another formulation of the cable's loop is tried where the first could be named
-    if candidate.effect != "cable_hysteresis" || cost(from) - cost(&closest) < 2.0 * NAMED {
+    // other formulations are tried where the first could be named, from the same place: a prior is about where a fit begins
+    let others = OTHERS.iter().find(|(effect, _)| *effect == candidate.effect).map_or(&[][..], |(_, others)| others);
+    if others.is_empty() || cost(from) - cost(&closest) < 2.0 * NAMED {
         return Some(closest);
     }
-    // Bouc-Wen's loop, or one made of stops, from the same place: a prior is about where a fit begins
-    let mut own = candidate.values(&extension.amplitudes);
-    own[1] *= STOPS_ALONG;
-    own.push(1.0);
-    [closest, fitted((extension.index, own))].into_iter().min_by(closer)
+    let other = |(way, ratio): &(f64, f64)| {
+        let mut own = candidate.values(&extension.amplitudes);
+        own[1] *= ratio;
+        own.push(*way);
+        fitted((extension.index, own))
+    };
+    others.par_iter().map(other).chain([closest]).min_by(closer)
 }
 
 fn cost(fit: &Fit) -> f64 {

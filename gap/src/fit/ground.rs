@@ -162,7 +162,7 @@ impl<'a> Ground<'a> {
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
         let mut more = Vec::new();
-        for candidate in self.narrow(&path, &whitener, &gap) {
+        for candidate in self.narrow(&path, &whitener, [&gap, &noise]) {
             columns.first.push(self.raw.len() + more.len());
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
             more.extend(self.draft().probes(&candidate));
@@ -227,13 +227,19 @@ impl<'a> Ground<'a> {
         whitener.with_slips(slips)
     }
 
-    /// Effects whose lines are too narrow for a grid, where they stand out of what is left.
-    fn narrow(&self, path: &Path, whitener: &Whitener, rest: &Signals) -> Vec<Candidate> {
+    /// Effects whose lines are too narrow for a grid, where they stand out of what the nominal parameters leave, and of what
+    /// the closest fit does.
+    fn narrow(&self, path: &Path, whitener: &Whitener, rests: [&Signals; 2]) -> Vec<Candidate> {
         let inputs = &self.record.inputs;
         let period_s = inputs.period_s;
-        let drive = path.drive(whitener, &whitener.apply(rest));
-        let cycles = ripple::cycles(path, &drive, &inputs.rel_rad(&self.nominal), &self.valid, period_s);
-        let modes = resonance::modes(path, whitener, &drive, &self.nominal.gimbal_rate_radps, period_s);
+        let (mut cycles, mut modes): (Vec<f64>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
+        let rests = if rests[0] == rests[1] { &rests[..1] } else { &rests[..] };
+        for rest in rests {
+            let drive = path.drive(whitener, &whitener.apply(rest));
+            let rel_rad = inputs.rel_rad(&self.nominal);
+            ripple::add_cycles(&mut cycles, path, &drive, &rel_rad, &self.valid, period_s);
+            resonance::add_modes(&mut modes, path, whitener, &drive, &self.nominal.gimbal_rate_radps, period_s);
+        }
         let mut narrow = narrow(&cycles, &modes);
         narrow.retain(|candidate| !self.not_looked_for.contains(&candidate.effect));
         narrow

@@ -25,14 +25,15 @@ const APART: f64 = 1.2;
 /// Dampings that are tried where the scan shows something.
 const DAMPINGS: [f64; 5] = [0.005, 0.01, 0.02, MODE_DAMPING, 0.06];
 
-/// Frequencies and dampings that a drive speaks for most [Hz].
-pub(crate) fn modes(
+/// Frequencies and dampings that a drive speaks for most, but for those that are known [Hz].
+pub(crate) fn add_modes(
+    known: &mut Vec<[f64; 2]>,
     path: &Path,
     whitener: &Whitener,
     drive: &[f64],
     rate_radps: &[f64],
     period_s: f64,
-) -> Vec<[f64; 2]> {
+) {
     let plans = whitener.plans();
     let acceleration = rate_radps.windows(2).map(|pair| (pair[1] - pair[0]) / period_s);
     let length = plans.length() as f64;
@@ -51,11 +52,13 @@ pub(crate) fn modes(
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut offered: Vec<f64> = Vec::new();
     for (hz, gain) in all {
-        if gain > 0.0 && offered.len() < OFFERED && offered.iter().all(|other| (hz / other).max(other / hz) > APART) {
+        let apart = |other: f64| (hz / other).max(other / hz) > APART;
+        let is_new = offered.iter().copied().chain(known.iter().map(|mode| mode[0])).all(apart);
+        if gain > 0.0 && offered.len() < OFFERED && is_new {
             offered.push(hz);
         }
     }
-    offered.into_par_iter().filter_map(|hz| lines.peak_near(hz)).collect()
+    known.par_extend(offered.into_par_iter().filter_map(|hz| lines.peak_near(hz)));
 }
 
 /// Lines of the gimbal's acceleration, of the drive, and what the channels see.

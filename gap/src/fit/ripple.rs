@@ -22,12 +22,19 @@ const AT_ONCE: usize = 50;
 /// Lines that are offered.
 const OFFERED: usize = 2;
 
-/// Cycles a revolution of the best lines.
-pub(crate) fn cycles(path: &Path, drive: &[f64], rel_rad: &[f64], valid: &[bool], period_s: f64) -> Vec<f64> {
+/// Cycles a revolution of the best lines, but for those that are known.
+pub(crate) fn add_cycles(
+    known: &mut Vec<f64>,
+    path: &Path,
+    drive: &[f64],
+    rel_rad: &[f64],
+    valid: &[bool],
+    period_s: f64,
+) {
     let (low, high) = rel_rad.iter().fold((f64::MAX, f64::MIN), |(low, high), rel| (low.min(*rel), high.max(*rel)));
     let span = high - low;
     if !span.is_finite() || span < LEAST_SPAN_RAD {
-        return Vec::new();
+        return;
     }
     let finest = TAU / span;
     let step = (0.25 * finest).max(MOST_CYCLES / MOST_LINES as f64);
@@ -52,13 +59,12 @@ pub(crate) fn cycles(path: &Path, drive: &[f64], rel_rad: &[f64], valid: &[bool]
     let all: Vec<usize> = (0..count).collect();
     let mut lines: Vec<(f64, f64)> = all.par_chunks(AT_ONCE).flat_map_iter(some).collect();
     lines.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut found: Vec<f64> = Vec::new();
+    let most = known.len() + OFFERED;
     for (cycles, _) in lines {
-        if found.len() < OFFERED && found.iter().all(|other| (other - cycles).abs() > 2.0 * finest) {
-            found.push(cycles);
+        if known.len() < most && known.iter().all(|other| (other - cycles).abs() > 2.0 * finest) {
+            known.push(cycles);
         }
     }
-    found
 }
 
 /// `drive exp(i c rel)` at every row, turned on from one c to the next.

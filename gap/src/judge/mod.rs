@@ -43,6 +43,6 @@ pub use strange::Stranger;
 pub(crate) use strange::strangers;
 pub(crate) use stretch::{carried_by_one_log, carried_by_one_stretch, pieces};
 pub(crate) use weigh::{
-    COST_OF_SHIFT, HELPS, LEAST_SHARE, NEVER, RARE_SHIFT, Weighed, at_a_bound, best, beyond, caution, costs_of,
-    is_part, worth_their_more,
+    COST_OF_SHIFT, HELPS, NEVER, RARE_SHIFT, Weighed, at_a_bound, best, beyond, caution, costs_of, is_part,
+    worth_their_more,
 };

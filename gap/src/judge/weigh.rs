@@ -22,8 +22,26 @@ const RARE_BESIDE: f64 = 4.0;
 const BOUND_HIT: f64 = 20.0;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(super) const BEYOND: f64 = 1.15;
-/// Least share of the gap that an effect takes away.
-pub(crate) const LEAST_SHARE: f64 = 0.003;
+/// Least share of the gap that an effect takes away: less may be what another formulation of the others is.
+const LEAST_SHARE: f64 = 0.003;
+/// Effects of one formulation: a constant, a factor, a product of what is logged. Whoever has them leaves nothing of them.
+const EXACT: [&str; 15] = [
+    "constant_torque",
+    "torque_bias",
+    "pickoff_bias",
+    "torque_scale",
+    "pickoff_scale",
+    "mass_unbalance",
+    "anisoelasticity",
+    "cross_axis_coupling",
+    "float_torque",
+    "g_sensitive_float_torque",
+    "gimbal_inertia",
+    "loop_gain",
+    "motor_lag",
+    "gyro_damping",
+    "angular_momentum",
+];
 /// What an effect must take away to be there when its size is not known to be more than zero [nats].
 pub(crate) const HELPS: f64 = 12.0;
 /// What rules a set out [nats].
@@ -61,7 +79,7 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         .collect();
     best_of_each(&mut all);
     let excess = (search.null.square - closest.square).max(1.0);
-    worth_their_more(&mut all, LEAST_SHARE * excess, |index| search.fits[index].square);
+    worth_their_more(&mut all, excess, |index| search.fits[index].square);
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;
         if !all.iter().any(|set| set.effects == [effect]) {
@@ -91,11 +109,14 @@ pub(crate) fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&We
     fitted.max_by(|a, b| of(a).total_cmp(&of(b)))
 }
 
-/// What a set has more than a smaller one must be worth it: one that takes less than so much more is less than that one is.
-/// The sets are those that were fitted, in the order of what they leave.
-pub(crate) fn worth_their_more(sets: &mut [Weighed], least: f64, left: impl Fn(usize) -> f64) {
+/// What a set has more than a smaller one must be worth it: one that takes less of what a gap has beyond the noise than the
+/// other's formulation may leave is less than that one is. The sets are those that were fitted, in the order of what they
+/// leave.
+pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, left: impl Fn(usize) -> f64) {
     for index in 0..sets.len() {
         for other in 0..sets.len() {
+            let exact = sets[other].effects.iter().all(|effect| EXACT.contains(effect));
+            let least = if exact { 0.0 } else { LEAST_SHARE * excess };
             let worthless = is_part(&sets[other].effects, &sets[index].effects) && left(other) - left(index) < least;
             let most = sets[other].nats - sets[other].cost + sets[index].cost - 1.0;
             if worthless && sets[index].nats > most {
@@ -215,4 +236,24 @@ pub(crate) fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, val
         1.0
     };
     values.iter().zip(errors).any(|(value, error)| value.abs() - error > BEYOND * tolerance.of(effect) * scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Weighed, worth_their_more};
+
+    fn set(effects: &[&'static str], nats: f64) -> Weighed {
+        Weighed { effects: effects.to_vec(), fit: None, nats, cost: 18.0 * effects.len() as f64, rare: 8.0 }
+    }
+
+    #[test]
+    fn closed_form_what_a_formulation_may_leave_is_no_effect_but_an_exact_effect_leaves_nothing() {
+        // 400 of a gap of a million
+        let left = [600.0, 200.0];
+        for (first, stays) in [("cable_hysteresis", false), ("constant_torque", true)] {
+            let mut sets = [set(&[first], 1e5), set(&[first, "viscous_friction"], 1e5 + 180.0)];
+            worth_their_more(&mut sets, 1e6, |index| left[index]);
+            assert_eq!(sets[1].nats - sets[1].cost > sets[0].nats - sets[0].cost, stays, "beside {first}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! An effect by its name and values, put into the physics; values as in the plant's table.
 
-use crate::simulate::{BuildUp, Hysteresis, Loop, Physics, Ripple};
+use crate::simulate::{BuildUp, Fall, Hysteresis, Loop, Physics, Ripple, Stribeck};
 
 /// Adds an effect to the physics. Unknown names change nothing.
 pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
@@ -9,7 +9,15 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
     match effect {
         "friction_level" => physics.friction.load_factor *= 1.0 + v(0),
         "viscous_friction" => physics.friction.viscous_nm_s += v(0),
-        "stribeck" => physics.friction.stribeck = Some([v(0), v(1)]),
+        "stribeck" => {
+            // a third value says how it falls
+            let falls = match v(2) {
+                way if way > 1.5 => Fall::Lorentzian,
+                way if way > 0.5 => Fall::Exponential,
+                _ => Fall::Gaussian,
+            };
+            physics.friction.stribeck = Some(Stribeck { excess_nm: v(0), rate_radps: v(1), falls });
+        }
         "presliding" => {
             physics.friction.presliding_rad = v(0);
             // a second value says how it is formulated

@@ -85,7 +85,14 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         _ if !releases(name).is_empty() => vec![released(effect, releases(name))],
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
-        "stribeck" => grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])),
+        "stribeck" => {
+            // the Gaussian fall; the others are tried where that gains
+            let mut settings = grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate]));
+            for own in &mut settings {
+                own.siblings *= 3;
+            }
+            settings
+        }
         "friction_drift" => grid(effect, &[0.12, 0.4, 1.3].map(|share| vec![0.1, share * seconds])),
         "cable_hysteresis" => {
             // Bouc-Wen's loop; the one of stops is tried where that gains

@@ -8,8 +8,8 @@ use super::material::Material;
 use super::parameters::Unit;
 use crate::fit::is_idle;
 use crate::judge::{
-    HELPS, LEAST_SHARE, NEVER, Weighed, at_a_bound, beyond, carried_by_one_log, carried_by_one_stretch, caution,
-    costs_of, is_part, worth_their_more,
+    HELPS, NEVER, Weighed, at_a_bound, beyond, carried_by_one_log, carried_by_one_stretch, caution, costs_of, is_part,
+    worth_their_more,
 };
 
 /// Sets in the order of their fits, then effects that were only looked at.
@@ -35,7 +35,7 @@ pub(super) fn weigh(
     let left = |fitted: &Fitted| fitted.squares.iter().sum::<f64>() + fitted.prior;
     let closest = fits.iter().chain([null]).map(left).fold(f64::MAX, f64::min);
     let excess = (left(null) - closest).max(1.0);
-    worth_their_more(&mut all, LEAST_SHARE * excess, |index| left(&fits[index]));
+    worth_their_more(&mut all, excess, |index| left(&fits[index]));
     for promise in promises {
         let effects = vec![promise.candidate.effect];
         if !all.iter().any(|set| set.effects == effects) {

@@ -11,6 +11,8 @@ use super::physics::BuildUp;
 use super::sprung::{Chain, Forces};
 
 const GRAVITY_MPS2: f64 = 9.806_65;
+/// So many slip rates away a round corner is none any more.
+const NO_CORNER: f64 = 3.0;
 
 #[allow(clippy::struct_excessive_bools, reason = "what any of the lanes has")]
 /// The parameters of all lanes; an effect that a lane does not have has no size there.
@@ -24,6 +26,8 @@ pub(super) struct Law<'a, const L: usize> {
     load_factor: Lanes<L>,
     asymmetry: Lanes<L>,
     pub(super) slip_radps: Lanes<L>,
+    roundness: Lanes<L>,
+    is_round: bool,
     pub(super) stop_rad: Lanes<L>,
     unbalance_kg_m: [Lanes<L>; 2],
     constant_nm: Lanes<L>,
@@ -59,6 +63,8 @@ impl<'a, const L: usize> Law<'a, L> {
             load_factor: of(&|own| own.friction.load_factor),
             asymmetry: of(&|own| own.friction.asymmetry),
             slip_radps: of(&|own| own.config.bearing.slip_rate_radps),
+            roundness: of(&|own| own.friction.roundness),
+            is_round: any(&|own| own.friction.roundness != 0.0),
             stop_rad: of(&Physics::stop_rad),
             unbalance_kg_m: [of(&|own| own.config.unbalance.x_kg_m), of(&|own| own.config.unbalance.y_kg_m)],
             constant_nm: of(&|own| own.constant_nm),
@@ -107,8 +113,8 @@ impl<'a, const L: usize> Law<'a, L> {
             load *= 1.0 + friction.per_g * now.accel[0][lane].hypot(now.accel[1][lane]) / GRAVITY_MPS2;
         }
         let mut level = load + self.viscous[lane].torque_nm(w.abs()) * friction.viscous_factor;
-        if let Some([excess, rate]) = friction.stribeck {
-            level += excess * (-(w / rate) * (w / rate)).exp();
+        if let Some(stribeck) = friction.stribeck {
+            level += stribeck.torque_nm(w);
         }
         if let Some([ratio, time_s]) = friction.drift {
             level *= 1.0 - ratio * (-now.time_s / time_s).exp_m1();
@@ -122,13 +128,37 @@ impl<'a, const L: usize> Law<'a, L> {
         level * (1.0 + self.asymmetry * w.side())
     }
 
-    /// The clamp, implicit: `w + brake level clamp(w / w_s) = rate`: w, share of the friction.
+    /// Share of the friction that is there at a rate: `clamp(x) + roundness (round(x) - clamp(x))`, `x = w / w_s`.
+    #[inline(always)]
+    pub(super) fn share(&self, w: Lanes<L>) -> Lanes<L> {
+        let x = w / self.slip_radps;
+        let clamp = x.within(1.0);
+        if self.is_round_at(w) { clamp + self.roundness * x.map(rounding) } else { clamp }
+    }
+
+    /// The clamp, implicit: `w + brake level share(w) = rate`: w, share of the friction. What is round of it is a small part,
+    /// and taken where the clamp by itself ends.
     #[inline(always)]
     pub(super) fn clamp(&self, rate: Lanes<L>, brake: Lanes<L>, level: Lanes<L>) -> (Lanes<L>, Lanes<L>) {
+        let mut w = self.hard(rate, brake, level);
+        if self.is_round_at(w) {
+            let round = self.roundness * (w / self.slip_radps).map(rounding);
+            w = self.hard(rate - brake * self.built_up(level, w) * round, brake, level);
+        }
+        (w, self.share(w))
+    }
+
+    /// Whether any of the rates is near a round corner.
+    #[inline(always)]
+    fn is_round_at(&self, w: Lanes<L>) -> bool {
+        self.is_round && w.any(self.slip_radps, |w, slip| w.abs() < NO_CORNER * slip)
+    }
+
+    #[inline(always)]
+    fn hard(&self, rate: Lanes<L>, brake: Lanes<L>, level: Lanes<L>) -> Lanes<L> {
         let slip = self.slip_radps;
         let pull = brake * self.built_up(level, rate);
-        let w = rate.abs().above(slip + pull, rate - pull * rate.signum(), rate / (1.0 + pull / slip));
-        (w, (w / slip).within(1.0))
+        rate.abs().above(slip + pull, rate - pull * rate.signum(), rate / (1.0 + pull / slip))
     }
 
     /// Whether a step crosses a corner of the clamp, or goes from one viscous law to the other.
@@ -152,9 +182,12 @@ impl<'a, const L: usize> Law<'a, L> {
         let (low, high) = (from.min(w), from.max(w));
         let crosses = (low < -slip && high > -slip) || (low < slip && high > slip);
         if crosses && high - low > 1e-9 {
+            let roundness = self.roundness[lane];
             let area = |w: f64| {
                 let a = w.abs();
-                level * (1.0 + asymmetry * side(w)) * if a > slip { a - 0.5 * slip } else { 0.5 * a * a / slip }
+                let hard = if a > slip { a - 0.5 * slip } else { 0.5 * a * a / slip };
+                let round = if roundness == 0.0 { 0.0 } else { roundness * slip * rounded_area(a / slip) };
+                level * (1.0 + asymmetry * side(w)) * (hard + round)
             };
             return Some((area(high) - area(low)) / (high - low));
         }
@@ -171,7 +204,8 @@ impl<'a, const L: usize> Law<'a, L> {
         let [before, zeta_before] = from;
         let friction = &self.physics[lane].friction;
         let (along, slip) = (friction.presliding_rad, self.slip_radps[lane]);
-        let full = |w: f64| if friction.builds_up == BuildUp::OnClamp { within(w / slip, 1.0) } else { side(w) };
+        let clamp = |w: f64| within(w / slip, 1.0) + friction.roundness * rounding(w / slip);
+        let full = |w: f64| if friction.builds_up == BuildUp::OnClamp { clamp(w) } else { side(w) };
         let clamped = if friction.builds_up == BuildUp::LoadAlone {
             (self.viscous[lane].torque_nm(rate.abs()) * friction.viscous_factor / level.max(1e-30)).min(1.0)
         } else {
@@ -341,5 +375,48 @@ impl<'a, const L: usize> Law<'a, L> {
         let [about_x, about_y, about_z] = self.turns;
         now.accel = turned(logged.map(Lanes::all), [about_x, about_y, about_z]);
         now.load += about_x * load_by_turn[0] + about_y * load_by_turn[1];
+    }
+}
+
+/// What round corners have more than a clamp: `x (27 + x^2) / (27 + 9 x^2)` up to 3, a hyperbolic tangent within 2.4 %, and 1
+/// from there.
+#[inline(always)]
+fn rounding(x: f64) -> f64 {
+    let near = within(x, NO_CORNER);
+    let square = near * near;
+    near * (27.0 + square) / (27.0 + 9.0 * square) - within(x, 1.0)
+}
+
+/// Its integral from 0 to a rate that is not below.
+fn rounded_area(x: f64) -> f64 {
+    let near = x.min(NO_CORNER);
+    let round = (0.5 * near * near + 12.0 * (near * near / 3.0).ln_1p()) / 9.0;
+    let hard = if near > 1.0 { near - 0.5 } else { 0.5 * near * near };
+    round - hard
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NO_CORNER, rounded_area, rounding};
+    use crate::simulate::lanes::within;
+
+    #[test]
+    fn closed_form_round_corners_are_a_hyperbolic_tangent_and_end() {
+        for x in [-2.7, -1.0, -0.3, 0.0, 0.5, 1.0, 1.7, 2.9, 3.0, 7.0] {
+            let round = rounding(x) + within(x, 1.0);
+            assert!((round - f64::tanh(x)).abs() < 0.024, "{x}: {round}");
+        }
+        assert!(rounding(NO_CORNER).abs() < 1e-15 && rounding(1e3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn closed_form_their_area_is_what_they_add_up_to() {
+        let step = 1e-4;
+        let mut area = 0.0;
+        for k in 0..50_000 {
+            let x = step * f64::from(k);
+            assert!((rounded_area(x) - area).abs() < 1e-7, "{x}");
+            area += step * rounding(x + 0.5 * step);
+        }
     }
 }

@@ -121,7 +121,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             x[PLAIN] = x[TORQUE];
         }
         let w = now.rate - x[PHI_RATE];
-        let zeta = (w / self.law.slip_radps).within(1.0);
+        let zeta = self.law.share(w);
         let friction = self.law.level(now, w) * zeta;
         let hysteresis = Lanes::each(|lane| begin[lane].hysteresis);
         let others = self.law.others(now, &x, hysteresis, |x| self.command_nm(x));

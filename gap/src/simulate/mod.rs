@@ -21,5 +21,5 @@ mod sprung;
 pub(crate) use chain::{ANGLES, TORQUES};
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
-pub use physics::{BuildUp, Friction, Hysteresis, Loop, Measurement, Physics, Ripple};
+pub use physics::{BuildUp, Fall, Friction, Hysteresis, Loop, Measurement, Physics, Ripple, Stribeck};
 pub use predict::{Begin, Prediction, Push, Variant, predict, predict_each};

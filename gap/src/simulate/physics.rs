@@ -52,18 +52,56 @@ pub struct Friction {
     pub per_g: f64,
     /// `T_f (1 + a sgn w)`.
     pub asymmetry: f64,
+    /// How round the clamp's corners are: 0 as it is, 1 about a hyperbolic tangent [1].
+    pub roundness: f64,
     /// `b w` [N m s/rad].
     pub viscous_nm_s: f64,
     /// `b w |w|` [N m s2/rad2].
     pub quadratic_nm_s2: f64,
-    /// Excess at rest [N m] and its rate [rad/s].
-    pub stribeck: Option<[f64; 2]>,
+    /// Excess at low rate.
+    pub stribeck: Option<Stribeck>,
     /// Displacement over which friction builds up [rad].
     pub presliding_rad: f64,
     /// How it does.
     pub builds_up: BuildUp,
     /// Ratio and time constant [s].
     pub drift: Option<[f64; 2]>,
+}
+
+/// Excess of the friction at low rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stribeck {
+    /// At rest [N m].
+    pub excess_nm: f64,
+    /// Its rate [rad/s].
+    pub rate_radps: f64,
+    /// How it falls.
+    pub falls: Fall,
+}
+
+/// How the excess of the friction falls with the rate, `x = w / w_s`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Fall {
+    /// `exp(-x^2)`.
+    #[default]
+    Gaussian,
+    /// `exp(-|x|)`.
+    Exponential,
+    /// `1 / (1 + x^2)`.
+    Lorentzian,
+}
+
+impl Stribeck {
+    /// The excess at a rate [N m].
+    pub(super) fn torque_nm(&self, w: f64) -> f64 {
+        let x = w / self.rate_radps;
+        let share = match self.falls {
+            Fall::Gaussian => (-x * x).exp(),
+            Fall::Exponential => (-x.abs()).exp(),
+            Fall::Lorentzian => 1.0 / (1.0 + x * x),
+        };
+        self.excess_nm * share
+    }
 }
 
 /// How friction builds up after a reversal.
@@ -134,6 +172,7 @@ impl Default for Friction {
             viscous_factor: 1.0,
             per_g: 0.0,
             asymmetry: 0.0,
+            roundness: 0.0,
             viscous_nm_s: 0.0,
             quadratic_nm_s2: 0.0,
             stribeck: None,
@@ -177,6 +216,23 @@ impl Physics {
             float_kg_m: 0.0,
             appendage: None,
             measurement: Measurement::default(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Fall, Stribeck};
+
+    #[test]
+    fn closed_form_the_excess_falls_with_the_rate_in_either_direction() {
+        for (falls, half) in
+            [(Fall::Gaussian, 2.0_f64.ln().sqrt()), (Fall::Exponential, 2.0_f64.ln()), (Fall::Lorentzian, 1.0)]
+        {
+            let own = Stribeck { excess_nm: 3e-4, rate_radps: 0.02, falls };
+            for (x, share) in [(0.0, 1.0), (half, 0.5), (-half, 0.5)] {
+                assert!((own.torque_nm(x * 0.02) / 3e-4 - share).abs() < 1e-12, "{falls:?} at {x}");
+            }
         }
     }
 }
