@@ -20,6 +20,8 @@ pub(crate) const RARE_SHIFT: f64 = 5.0;
 const RARE_BESIDE: f64 = 4.0;
 /// A parameter at the end of its range [nats].
 const BOUND_HIT: f64 = 20.0;
+/// Share of its least realistic value below which a size hits the end of its range.
+const FAR_BELOW: f64 = 0.03;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(super) const BEYOND: f64 = 1.15;
 /// Least share of the gap that an effect takes away: less may be what another formulation of the others is.
@@ -216,7 +218,7 @@ fn helps(search: &Search, fit: &Fit, place: usize) -> bool {
 }
 
 /// What a shape beyond its realistic range by more than its error costs: a cable's loop as long as the motion is a
-/// spring.
+/// spring; and a size that has a least one, far below it: how soon friction builds up is then what the law is at zero rate.
 pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
     let Some(effect) = Effect::from_name(effect) else { return 0.0 };
     let shapes = effect.parameters().iter().zip(values.iter().zip(errors)).skip(effect.sizes());
@@ -224,7 +226,11 @@ pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
         let factor = (2.0 * error / value.abs().max(1e-30)).min(2.0).exp();
         parameter.bound != Bound::Any && (value * factor < parameter.low || value / factor > parameter.high)
     };
-    if shapes.into_iter().any(outside) { BOUND_HIT } else { 0.0 }
+    let sizes = effect.parameters().iter().zip(values).take(effect.sizes());
+    let too_small = |(parameter, value): (&Parameter, &f64)| {
+        parameter.bound == Bound::NotNegative && *value < FAR_BELOW * parameter.low
+    };
+    if shapes.into_iter().any(outside) || sizes.into_iter().any(too_small) { BOUND_HIT } else { 0.0 }
 }
 
 /// Whether a nominal parameter is beyond its tolerance by more than its own error.
