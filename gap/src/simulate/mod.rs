@@ -7,6 +7,7 @@
 mod bearing;
 mod cable;
 mod chain;
+mod corner;
 mod discrete;
 mod inputs;
 mod lanes;
