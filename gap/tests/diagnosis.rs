@@ -227,6 +227,19 @@ fn a_float_that_goes_past_its_stop_says_that_the_stop_is_farther() {
     }
 }
 
+#[test]
+fn what_a_sensor_reads_wrong_is_no_torque() {
+    let mut log = log_with(Excitation::Manoeuvre, &[]);
+    let theta_rad = log.column(Column::GyroAngle).expect("the pick-off");
+    let peak_rad = theta_rad.iter().fold(0.0, |peak: f64, own| peak.max(own.abs()));
+    let read = theta_rad.iter().map(|theta| theta * (1.0 + 0.01 * (theta / peak_rad).powi(2))).collect();
+    log.set(Column::GyroAngle, read);
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(report(&diagnosis)["verdict"], "unexplained", "{:?}", names(&diagnosis));
+    let decision = diagnosis.decision.as_ref().expect("a decision");
+    assert_eq!(decision.goes_with().map(|stranger| stranger.of), Some("what the pick-off reads"));
+}
+
 /// What follows a stop says what it says of a platform that begins there.
 #[test]
 fn an_effect_beside_a_stop_is_named() {

@@ -1,17 +1,29 @@
-//! Torques that are functions of the same.
+//! What an effect of no name might add, in groups of functions of the same.
 
 use super::on_float;
-use crate::fit::{Fit, Problem};
+use crate::fit::{Fit, Problem, narrow};
+use crate::record::Signal;
 
-/// A group of them.
+/// What is added to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Acts {
+    /// A torque on the gimbal [N m].
+    OnGimbal,
+    /// A drift of the float [rad/s].
+    OnFloat,
+    /// What a sensor reads, in its unit.
+    OnReading(Signal),
+}
+
+/// A group of functions.
 #[derive(Debug)]
 pub(crate) struct Group {
     /// What of.
     pub(crate) of: &'static str,
-    /// A torque a row on the gimbal [N m], or a drift of the float [rad/s].
-    pub(crate) torques: Vec<Vec<f64>>,
-    /// Which of both.
-    pub(crate) on_float: bool,
+    /// One a function, row by row.
+    pub(crate) series: Vec<Vec<f64>>,
+    /// What they are added to.
+    pub(crate) acts: Acts,
     /// What their choice among others costs [nats].
     pub(crate) choice: f64,
 }
@@ -19,10 +31,17 @@ pub(crate) struct Group {
 impl Group {
     /// What they do to the whitened channels at a fit.
     pub(super) fn columns(&self, problem: &Problem, fit: &Fit) -> Vec<Vec<f32>> {
-        if self.on_float {
-            on_float::columns(problem, fit, &self.torques)
-        } else {
-            self.torques.iter().map(|torque| problem.torque_column(torque)).collect()
+        match self.acts {
+            Acts::OnFloat => on_float::columns(problem, fit, &self.series),
+            Acts::OnGimbal => self.series.iter().map(|torque| problem.torque_column(torque)).collect(),
+            Acts::OnReading(signal) => self.series.iter().map(|own| read(problem, signal, own)).collect(),
         }
     }
+}
+
+/// What a reading of one sensor is to the whitened channels.
+fn read(problem: &Problem, signal: Signal, reading: &[f64]) -> Vec<f32> {
+    let channels = problem.record.channels.iter();
+    let signals = channels.map(|own| if own.signal == signal { reading.to_vec() } else { vec![0.0; reading.len()] });
+    narrow(&problem.whiten(signals.collect()))
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
-use super::group::Group;
+use super::group::{Acts, Group};
 use super::on_float::{driven, gain};
 use crate::fit::Problem;
 
@@ -25,8 +25,8 @@ pub(super) struct Carrier {
     pub(super) of: &'static str,
     /// Row by row.
     pub(super) series: Vec<f64>,
-    /// Whether it is a torque on the float, not on the gimbal.
-    pub(super) on_float: bool,
+    /// What it is added to: the gimbal, or the float.
+    pub(super) acts: Acts,
 }
 
 /// Sine and cosine of the strongest line in a drive that a carrier makes; none where the log is too short for one.
@@ -34,13 +34,14 @@ pub(super) fn line(problem: &Problem, drive: &[f64], carrier: &Carrier) -> Optio
     let period_s = problem.record.inputs.period_s;
     let rows = drive.len();
     let length = (FINER * rows).next_power_of_two();
-    let own = if carrier.on_float { driven(drive) } else { drive.to_vec() };
+    let on_float = carrier.acts == Acts::OnFloat;
+    let own = if on_float { driven(drive) } else { drive.to_vec() };
     let beating: Vec<f64> = own.iter().zip(&carrier.series).map(|(drive, carrier)| drive * carrier).collect();
     let step_hz = 1.0 / (length as f64 * period_s);
     let seen = problem.path.seen();
     let seen_at = |place: usize| {
         let cycles_a_row = place as f64 / length as f64;
-        seen.at(place as f64 * step_hz) * if carrier.on_float { gain(cycles_a_row) } else { 1.0 }
+        seen.at(place as f64 * step_hz) * if on_float { gain(cycles_a_row) } else { 1.0 }
     };
     let energy = spread(&spectrum(&carrier.series, length)?, &(0..=length / 2).map(seen_at).collect::<Vec<_>>())?;
     let from_hz = FROM_PERIODS / (rows as f64 * period_s);
@@ -57,8 +58,8 @@ pub(super) fn line(problem: &Problem, drive: &[f64], carrier: &Carrier) -> Optio
         carrier.series.iter().enumerate().map(at).collect()
     };
     let independent = (to_hz - from_hz) * rows as f64 * period_s;
-    let (torques, choice) = (vec![wave(0.0), wave(-0.25)], independent.max(1.0).ln());
-    Some(Group { of: carrier.of, torques, on_float: carrier.on_float, choice })
+    let (series, choice) = (vec![wave(0.0), wave(-0.25)], independent.max(1.0).ln());
+    Some(Group { of: carrier.of, series, acts: carrier.acts, choice })
 }
 
 /// Power of the lines of a series with zeros up to a length.

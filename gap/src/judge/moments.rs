@@ -6,7 +6,7 @@
 //!
 //! Each moment pays for its choice among all places and lengths; what else takes the same is for the joint fit to say.
 
-use super::group::Group;
+use super::group::{Acts, Group};
 use crate::fit::Problem;
 
 /// Rows that a torque lasts.
@@ -73,8 +73,8 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
     };
     (!chosen.is_empty()).then(|| Group {
         of: "a few moments",
-        torques: chosen.iter().map(torque).collect(),
-        on_float: false,
+        series: chosen.iter().map(torque).collect(),
+        acts: Acts::OnGimbal,
         choice: chosen.iter().map(|moment| moment.choice).sum(),
     })
 }

@@ -39,20 +39,20 @@ pub(super) fn columns(problem: &Problem, fit: &Fit, drifts_radps: &[Vec<f64>]) -
                 drifted_rad += own * inputs.period_s;
             }
         }
-        let given: Vec<f64> = on_float(drift).iter().map(|rise| inertia / inputs.period_s * rise).collect();
+        let given: Vec<f64> = changes(drift).iter().map(|rise| inertia / inputs.period_s * rise).collect();
         let mut column = narrow(&problem.whiten(signals));
         column.iter_mut().zip(problem.torque_column(&given)).for_each(|(own, given)| *own += given);
         column
     })
 }
 
-/// What the gimbal is given in the place of a torque on the float, up to a factor; at the ends nothing.
-pub(super) fn on_float(torque: &[f64]) -> Vec<f64> {
-    let mut given = vec![0.0; torque.len()];
-    for (given, around) in given.iter_mut().skip(1).zip(torque.windows(3)) {
-        *given = 0.5 * (around[2] - around[0]);
+/// Change a row: what the gimbal is given in the place of a torque on the float, up to a factor; at the ends nothing.
+pub(super) fn changes(of: &[f64]) -> Vec<f64> {
+    let mut changes = vec![0.0; of.len()];
+    for (change, around) in changes.iter_mut().skip(1).zip(of.windows(3)) {
+        *change = 0.5 * (around[2] - around[0]);
     }
-    given
+    changes
 }
 
 /// What a drive of torques on the gimbal is to torques on the float: the other way around, and backwards.
@@ -72,7 +72,7 @@ pub(super) fn gain(cycles_a_row: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{driven, gain, on_float};
+    use super::{changes, driven, gain};
 
     fn dot(a: &[f64], b: &[f64]) -> f64 {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -82,13 +82,13 @@ mod tests {
     fn a_drive_is_the_adjoint() {
         let torque: Vec<f64> = (0..50).map(|k| f64::from(k * k % 17)).collect();
         let drive: Vec<f64> = (0..50).map(|k| f64::from(k * 7 % 13)).collect();
-        assert!((dot(&on_float(&torque), &drive) - dot(&torque, &driven(&drive))).abs() < 1e-9);
+        assert!((dot(&changes(&torque), &drive) - dot(&torque, &driven(&drive))).abs() < 1e-9);
     }
 
     #[test]
     fn closed_form_the_gain_of_a_line() {
         let wave: Vec<f64> = (0..4000).map(|k| (0.3 * f64::from(k)).sin()).collect();
         let power = |of: &[f64]| dot(of, of) / of.len() as f64;
-        assert!((power(&on_float(&wave)) / power(&wave) - gain(0.3 / std::f64::consts::TAU)).abs() < 1e-3);
+        assert!((power(&changes(&wave)) / power(&wave) - gain(0.3 / std::f64::consts::TAU)).abs() < 1e-3);
     }
 }

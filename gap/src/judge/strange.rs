@@ -1,5 +1,5 @@
-//! What a fit leaves, tried on torques that no effect of the library is asked for: smooth functions of what the
-//! platform does. A gap of a kind that the library lacks still depends on something.
+//! What a fit leaves, tried on torques and errors of sensors that no effect of the library is asked for: smooth functions
+//! of what the platform does. A gap of a kind that the library lacks still depends on something.
 //!
 //! ```text
 //! gain = max over c of |r|^2 - |r - B b - W G sum c_i d_i|^2        d_i(t) a group's torques, B all that is fitted

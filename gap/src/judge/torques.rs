@@ -1,9 +1,11 @@
-//! Torques that an effect might be, in groups by what they are functions of.
+//! Torques and errors of sensors that an effect might be, in groups by what they are functions of.
 
-use super::group::Group;
+use super::group::{Acts, Group};
 use super::lines::{Carrier, line};
 use super::moments::moments;
+use super::on_float::changes;
 use crate::fit::{Fit, Problem};
+use crate::record::Signal;
 
 /// Rms of each torque on the gimbal [N m], and of each drift of the float [rad/s].
 const UNIT_NM: f64 = 1e-4;
@@ -35,21 +37,37 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     functions.extend(motion.of_specific_force());
     let way = usize::from(!problem.turns_mostly);
     let choice = |of: &str| if SLOW.contains(&of) { WANDERS_NATS[way] } else { WARY_NATS[way] };
-    let grouped = |functions: Vec<Functions>, on_float: bool| {
-        functions.into_iter().map(move |(of, torques)| Group { of, choice: choice(of), torques, on_float })
+    let grouped = |functions: Vec<Functions>, acts: Acts| {
+        functions.into_iter().map(move |(of, series)| Group { of, choice: choice(of), series, acts })
     };
-    let mut groups: Vec<Group> = grouped(functions, false).chain(grouped(motion.of_float(), true)).collect();
+    let mut groups: Vec<Group> =
+        grouped(functions, Acts::OnGimbal).chain(grouped(motion.of_float(), Acts::OnFloat)).collect();
+    for (signal, functions) in motion.of_readings() {
+        if problem.record.channel(signal).is_some() {
+            groups.extend(grouped(vec![functions], Acts::OnReading(signal)));
+        }
+    }
     let drive = problem.path.drive(&problem.whitener, &fit.residual);
     let lines = motion.carriers().into_iter().filter_map(|carrier| line(problem, &drive, &carrier));
     groups.extend(lines.map(|line| Group { choice: line.choice + WARY_NATS[way], ..line }));
     groups.extend(moments(problem, &drive));
     for group in &mut groups {
-        let unit = if group.on_float { UNIT_RADPS } else { UNIT_NM };
-        for torque in &mut group.torques {
-            *torque = scaled(torque).iter().map(|value| unit * value).collect();
+        let unit = match group.acts {
+            Acts::OnGimbal => UNIT_NM,
+            Acts::OnFloat => UNIT_RADPS,
+            Acts::OnReading(signal) => noise(problem, signal),
+        };
+        for own in &mut group.series {
+            *own = scaled(own).iter().map(|value| unit * value).collect();
         }
     }
     groups
+}
+
+/// Rms of the noise of a sensor.
+fn noise(problem: &Problem, signal: Signal) -> f64 {
+    let mut channels = problem.record.channels.iter().zip(&problem.noise);
+    channels.find(|(own, _)| own.signal == signal).map_or(1.0, |(_, noise)| *noise)
 }
 
 /// What the platform does.
@@ -148,16 +166,25 @@ impl<'a> Motion<'a> {
         vec![("gyro angle", angles.to_vec()), ("gyro angle and specific force", tilted.to_vec())]
     }
 
+    /// Errors of a sensor: of what it reads, and of how fast that changes, as one that answers late has.
+    fn of_readings(&self) -> [(Signal, Functions); 2] {
+        let errors = |of: &[f64]| vec![even(of, 2.0), odd(of, 2.0), odd(of, 3.0), changes(of)];
+        [
+            (Signal::GyroAngle, ("what the pick-off reads", errors(&self.float))),
+            (Signal::MotorTorque, ("what the torque sensor reads", errors(&self.torque))),
+        ]
+    }
+
     /// What may beat in time: a torque, the motor's torque, friction, the gyro's wheel.
     fn carriers(&self) -> [Carrier; 4] {
         let ones = vec![1.0; self.time.len()];
         [
-            ("a line in time", ones, false),
-            ("motor torque and a line in time", self.torque.clone(), false),
-            ("direction and a line in time", self.sign.clone(), false),
-            ("gyro's rate and a line in time", self.turning.clone(), true),
+            ("a line in time", ones, Acts::OnGimbal),
+            ("motor torque and a line in time", self.torque.clone(), Acts::OnGimbal),
+            ("direction and a line in time", self.sign.clone(), Acts::OnGimbal),
+            ("gyro's rate and a line in time", self.turning.clone(), Acts::OnFloat),
         ]
-        .map(|(of, series, on_float)| Carrier { of, series, on_float })
+        .map(|(of, series, acts)| Carrier { of, series, acts })
     }
 
     /// A first-order lag.
