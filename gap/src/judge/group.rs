@@ -6,13 +6,13 @@ use crate::record::Signal;
 
 /// What is added to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Acts {
+pub(crate) enum On {
     /// A torque on the gimbal [N m].
-    OnGimbal,
+    Gimbal,
     /// A drift of the float [rad/s].
-    OnFloat,
+    Float,
     /// What a sensor reads, in its unit.
-    OnReading(Signal),
+    Reading(Signal),
 }
 
 /// A group of functions.
@@ -23,7 +23,7 @@ pub(crate) struct Group {
     /// One a function, row by row.
     pub(crate) series: Vec<Vec<f64>>,
     /// What they are added to.
-    pub(crate) acts: Acts,
+    pub(crate) on: On,
     /// What their choice among others costs [nats].
     pub(crate) choice: f64,
 }
@@ -31,10 +31,10 @@ pub(crate) struct Group {
 impl Group {
     /// What they do to the whitened channels at a fit.
     pub(super) fn columns(&self, problem: &Problem, fit: &Fit) -> Vec<Vec<f32>> {
-        match self.acts {
-            Acts::OnFloat => on_float::columns(problem, fit, &self.series),
-            Acts::OnGimbal => self.series.iter().map(|torque| problem.torque_column(torque)).collect(),
-            Acts::OnReading(signal) => self.series.iter().map(|own| read(problem, signal, own)).collect(),
+        match self.on {
+            On::Float => on_float::columns(problem, fit, &self.series),
+            On::Gimbal => self.series.iter().map(|torque| problem.torque_column(torque)).collect(),
+            On::Reading(signal) => self.series.iter().map(|own| read(problem, signal, own)).collect(),
         }
     }
 }

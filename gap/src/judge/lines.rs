@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
-use super::group::{Acts, Group};
+use super::group::{Group, On};
 use super::on_float::{driven, gain};
 use crate::fit::Problem;
 
@@ -26,7 +26,7 @@ pub(super) struct Carrier {
     /// Row by row.
     pub(super) series: Vec<f64>,
     /// What it is added to: the gimbal, or the float.
-    pub(super) acts: Acts,
+    pub(super) on: On,
 }
 
 /// Sine and cosine of the strongest line in a drive that a carrier makes; none where the log is too short for one.
@@ -34,7 +34,7 @@ pub(super) fn line(problem: &Problem, drive: &[f64], carrier: &Carrier) -> Optio
     let period_s = problem.record.inputs.period_s;
     let rows = drive.len();
     let length = (FINER * rows).next_power_of_two();
-    let on_float = carrier.acts == Acts::OnFloat;
+    let on_float = carrier.on == On::Float;
     let own = if on_float { driven(drive) } else { drive.to_vec() };
     let beating: Vec<f64> = own.iter().zip(&carrier.series).map(|(drive, carrier)| drive * carrier).collect();
     let step_hz = 1.0 / (length as f64 * period_s);
@@ -59,7 +59,7 @@ pub(super) fn line(problem: &Problem, drive: &[f64], carrier: &Carrier) -> Optio
     };
     let independent = (to_hz - from_hz) * rows as f64 * period_s;
     let (series, choice) = (vec![wave(0.0), wave(-0.25)], independent.max(1.0).ln());
-    Some(Group { of: carrier.of, series, acts: carrier.acts, choice })
+    Some(Group { of: carrier.of, series, on: carrier.on, choice })
 }
 
 /// Power of the lines of a series with zeros up to a length.

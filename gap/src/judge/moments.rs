@@ -6,7 +6,7 @@
 //!
 //! Each moment pays for its choice among all places and lengths; what else takes the same is for the joint fit to say.
 
-use super::group::{Acts, Group};
+use super::group::{Group, On};
 use crate::fit::Problem;
 
 /// Rows that a torque lasts.
@@ -74,7 +74,7 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
     (!chosen.is_empty()).then(|| Group {
         of: "a few moments",
         series: chosen.iter().map(torque).collect(),
-        acts: Acts::OnGimbal,
+        on: On::Gimbal,
         choice: chosen.iter().map(|moment| moment.choice).sum(),
     })
 }

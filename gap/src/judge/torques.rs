@@ -1,6 +1,6 @@
 //! Torques and errors of sensors that an effect might be, in groups by what they are functions of.
 
-use super::group::{Acts, Group};
+use super::group::{Group, On};
 use super::lines::{Carrier, line};
 use super::moments::moments;
 use super::on_float::changes;
@@ -37,14 +37,13 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     functions.extend(motion.of_specific_force());
     let way = usize::from(!problem.turns_mostly);
     let choice = |of: &str| if SLOW.contains(&of) { WANDERS_NATS[way] } else { WARY_NATS[way] };
-    let grouped = |functions: Vec<Functions>, acts: Acts| {
-        functions.into_iter().map(move |(of, series)| Group { of, choice: choice(of), series, acts })
+    let grouped = |functions: Vec<Functions>, on: On| {
+        functions.into_iter().map(move |(of, series)| Group { of, choice: choice(of), series, on })
     };
-    let mut groups: Vec<Group> =
-        grouped(functions, Acts::OnGimbal).chain(grouped(motion.of_float(), Acts::OnFloat)).collect();
+    let mut groups: Vec<Group> = grouped(functions, On::Gimbal).chain(grouped(motion.of_float(), On::Float)).collect();
     for (signal, functions) in motion.of_readings() {
         if problem.record.channel(signal).is_some() {
-            groups.extend(grouped(vec![functions], Acts::OnReading(signal)));
+            groups.extend(grouped(vec![functions], On::Reading(signal)));
         }
     }
     let drive = problem.path.drive(&problem.whitener, &fit.residual);
@@ -52,10 +51,10 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     groups.extend(lines.map(|line| Group { choice: line.choice + WARY_NATS[way], ..line }));
     groups.extend(moments(problem, &drive));
     for group in &mut groups {
-        let unit = match group.acts {
-            Acts::OnGimbal => UNIT_NM,
-            Acts::OnFloat => UNIT_RADPS,
-            Acts::OnReading(signal) => noise(problem, signal),
+        let unit = match group.on {
+            On::Gimbal => UNIT_NM,
+            On::Float => UNIT_RADPS,
+            On::Reading(signal) => noise(problem, signal),
         };
         for own in &mut group.series {
             *own = scaled(own).iter().map(|value| unit * value).collect();
@@ -179,12 +178,12 @@ impl<'a> Motion<'a> {
     fn carriers(&self) -> [Carrier; 4] {
         let ones = vec![1.0; self.time.len()];
         [
-            ("a line in time", ones, Acts::OnGimbal),
-            ("motor torque and a line in time", self.torque.clone(), Acts::OnGimbal),
-            ("direction and a line in time", self.sign.clone(), Acts::OnGimbal),
-            ("gyro's rate and a line in time", self.turning.clone(), Acts::OnFloat),
+            ("a line in time", ones, On::Gimbal),
+            ("motor torque and a line in time", self.torque.clone(), On::Gimbal),
+            ("direction and a line in time", self.sign.clone(), On::Gimbal),
+            ("gyro's rate and a line in time", self.turning.clone(), On::Float),
         ]
-        .map(|(of, series, acts)| Carrier { of, series, acts })
+        .map(|(of, series, on)| Carrier { of, series, on })
     }
 
     /// A first-order lag.
