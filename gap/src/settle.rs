@@ -30,10 +30,14 @@ pub(crate) struct Settled<'a> {
 pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
     let mut on = Measured::new(Ground::new(record, model));
     loop {
-        let looked = look(&on.problem, on.nominal.clone(), on.carried.take());
+        let mut looked = look(&on.problem, on.nominal.clone(), on.carried.take());
+        let mut beaten = on.may_be_beaten_by(looked.closest());
         // pairs are for a noise that no single effect stays below
-        let looked = if on.may_be_beaten_by(looked.closest()) { looked } else { looked.widened(&on.problem) };
-        let best = if on.may_be_beaten_by(looked.closest()) {
+        if !beaten {
+            looked = looked.widened(&on.problem);
+            beaten = on.may_be_beaten_by(looked.closest());
+        }
+        let best = if beaten {
             let best = looked.closest().clone();
             drop(looked);
             ended(&mut on.problem, best)

@@ -18,7 +18,7 @@ use super::turning::{at_once, impulse, mostly, remembered, turning_noise, turns}
 use super::whiten::Loop;
 use super::{Columns, Fit, Problem, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, narrow, not_looked_for, nuisances, platform};
-use crate::record::{Record, Signal, rough};
+use crate::record::{Channel, Record, Signal, rough};
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
 /// Problems under any noise are made from this.
@@ -231,12 +231,11 @@ impl<'a> Ground<'a> {
     /// the closest fit does.
     fn narrow(&self, path: &Path, whitener: &Whitener, rests: [&Signals; 2]) -> Vec<Candidate> {
         let inputs = &self.record.inputs;
-        let period_s = inputs.period_s;
+        let (period_s, rel_rad) = (inputs.period_s, inputs.rel_rad(&self.nominal));
         let (mut cycles, mut modes): (Vec<f64>, Vec<[f64; 2]>) = (Vec::new(), Vec::new());
         let rests = if rests[0] == rests[1] { &rests[..1] } else { &rests[..] };
         for rest in rests {
             let drive = path.drive(whitener, &whitener.apply(rest));
-            let rel_rad = inputs.rel_rad(&self.nominal);
             ripple::add_cycles(&mut cycles, path, &drive, &rel_rad, &self.valid, period_s);
             resonance::add_modes(&mut modes, path, whitener, &drive, &self.nominal.gimbal_rate_radps, period_s);
         }
@@ -252,18 +251,8 @@ fn offer(record: &Record, nominal: &Prediction) -> Offer {
     Offer {
         peak_torque_nm: record
             .channel(Signal::MotorTorque)
-            .map_or_else(|| peak(&nominal.motor_torque_nm), |channel| high(&channel.values)),
+            .map_or_else(|| peak(&nominal.motor_torque_nm), Channel::held_peak),
         sees_torque: sees(Signal::MotorTorque),
         sees_cross: !record.inputs.cross_radps.is_empty(),
     }
-}
-
-/// Largest value that is held for a few rows.
-fn high(values: &[f64]) -> f64 {
-    values
-        .windows(5)
-        .map(|few| {
-            few.iter().fold(f64::MAX, |least, value| if value.is_finite() { least.min(value.abs()) } else { 0.0 })
-        })
-        .fold(0.0, f64::max)
 }

@@ -6,35 +6,22 @@ use super::comb;
 use super::grid;
 use super::weigh::BEYOND;
 use crate::fit::{Fit, Problem};
-use crate::record::Signal;
+use crate::record::{Channel, Signal};
 
 /// Effects that they show.
 pub(crate) const READ_OFF: [&str; 2] = ["stop_angle", "pickoff_quantisation"];
-
-/// Rows for which an angle is held.
-const HELD: usize = 5;
 
 /// How far the stop is from where it should be, as a pick-off of this scale shows it, and the error of that: where the float
 /// stands still, or as far as it went past where it should have.
 pub(super) fn stop_change(problem: &Problem, pickoff: f64, tolerance: &Tolerance) -> Option<(f64, f64)> {
     let plateau = problem.record.plateau_rad;
-    let reached_rad = plateau.or_else(|| farthest_rad(problem))?;
+    let reached_rad = plateau.or_else(|| problem.record.channel(Signal::GyroAngle).map(Channel::held_peak))?;
     let change = reached_rad / (problem.stop_rad * pickoff) - 1.0;
     // the pick-off that shows it has a scale of its own
     let scale = problem.nuisance("pickoff_scale").map_or(0.0, |place| problem.nuisances[place].sigma);
     let error = (1.0 + change) * scale.hypot(problem.noise[0] / reached_rad);
     let beyond = if plateau.is_some() { change.abs() } else { change };
     (beyond > least_stop_change(tolerance)).then_some((change, error))
-}
-
-/// The largest angle that was held for a few rows [rad].
-fn farthest_rad(problem: &Problem) -> Option<f64> {
-    let theta = problem.record.channel(Signal::GyroAngle)?;
-    let held = |few: (&[f64], &[bool])| {
-        let all = few.1.iter().all(|valid| *valid) && few.0.iter().all(|angle| angle.signum() == few.0[0].signum());
-        if all { few.0.iter().fold(f64::MAX, |least, angle| least.min(angle.abs())) } else { 0.0 }
-    };
-    Some(theta.values.windows(HELD).zip(theta.valid.windows(HELD)).map(held).fold(0.0, f64::max))
 }
 
 /// Relative change of the stop, as the pick-off reads it, that no tolerance accounts for.

@@ -85,22 +85,11 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         _ if !releases(name).is_empty() => vec![released(effect, releases(name))],
         "torque_bias" if !offer.sees_torque => Vec::new(),
         "cross_axis_coupling" if !offer.sees_cross => Vec::new(),
-        "stribeck" => {
-            // the Gaussian fall; the others are tried where that gains
-            let mut settings = grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate]));
-            for own in &mut settings {
-                own.siblings *= 3;
-            }
-            settings
-        }
+        // of these the first formulation is looked for: the Gaussian fall, Bouc-Wen's loop
+        "stribeck" => formulated(grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])), 3),
         "friction_drift" => grid(effect, &[0.12, 0.4, 1.3].map(|share| vec![0.1, share * seconds])),
         "cable_hysteresis" => {
-            // Bouc-Wen's loop; the one of stops is tried where that gains
-            let mut settings = grid(effect, &[0.0015, 0.005, 0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along]));
-            for own in &mut settings {
-                own.siblings *= 2;
-            }
-            settings
+            formulated(grid(effect, &[0.0015, 0.005, 0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])), 2)
         }
         "flexible_mode" => {
             grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, MODE_DAMPING]))
@@ -167,6 +156,14 @@ fn spread(effect: Effect, index: usize) -> f64 {
 fn released(effect: Effect, releases: &'static [&'static str]) -> Candidate {
     let prior = (0..releases.len()).map(|index| (0.0, spread(effect, index))).collect();
     Candidate { effect: effect.name(), probes: Vec::new(), prior, releases, siblings: 1 }
+}
+
+/// The first of so many formulations: the others are tried where it gains.
+fn formulated(mut settings: Vec<Candidate>, formulations: usize) -> Vec<Candidate> {
+    for own in &mut settings {
+        own.siblings *= formulations;
+    }
+    settings
 }
 
 /// Linear in the sizes; one candidate for each setting of the rest.

@@ -30,6 +30,9 @@ impl Signal {
     }
 }
 
+/// Rows for which a value is held.
+const HELD: usize = 5;
+
 /// One measured output on the grid.
 #[derive(Debug, Clone)]
 pub struct Channel {
@@ -52,6 +55,13 @@ impl Channel {
         Self { signal, values, valid }
     }
 
+    /// Largest size of a value that is held for a few rows.
+    pub(crate) fn held_peak(&self) -> f64 {
+        let sizes: Vec<f64> =
+            self.values.iter().zip(&self.valid).map(|(value, valid)| if *valid { value.abs() } else { 0.0 }).collect();
+        sizes.windows(HELD).map(|few| few.iter().copied().fold(f64::MAX, f64::min)).fold(0.0, f64::max)
+    }
+
     /// Takes samples that stand alone for missing, and says so.
     pub(super) fn without_spikes(&mut self) -> Option<String> {
         let found = spikes(&self.values, &self.valid);
@@ -62,5 +72,20 @@ impl Channel {
         let told =
             || format!("{} of {} samples of {name} stand alone: they do not count", found.len(), self.values.len());
         (!found.is_empty()).then(told)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Channel, Signal};
+
+    #[test]
+    fn closed_form_a_peak_is_held_for_some_rows_that_count() {
+        let channel = |values: &[f64]| Channel::new(Signal::GyroAngle, values.to_vec());
+        let held = [0.0, 9.0, 1.0, -3.0, -4.0, -3.5, -4.0, -3.0, 1.0];
+        assert!((channel(&held).held_peak() - 3.0).abs() < 1e-15);
+        let mut missing = held;
+        missing[5] = f64::NAN;
+        assert!((channel(&missing).held_peak() - 0.0).abs() < 1e-15);
     }
 }
