@@ -40,7 +40,9 @@ pub(super) enum Shape {
     BiasDrift {
         time_s: f64,
     },
+    /// Of the effort needed, and of the inertia's alone.
     LoadDependence,
+    InertialLoad,
     PositionFriction {
         wave_number: f64,
     },
@@ -105,7 +107,7 @@ impl Shape {
             Self::FrictionDrift { .. } => "friction_drift",
             Self::ViscousDrift { .. } => "viscous_drift",
             Self::BiasDrift { .. } => "bias_drift",
-            Self::LoadDependence => "load_dependence",
+            Self::LoadDependence | Self::InertialLoad => "load_dependence",
             Self::PositionFriction { .. } => "position_friction",
             Self::FrictionTaper => "friction_taper",
             Self::Spring => "cable_spring",
@@ -138,6 +140,7 @@ impl Shape {
             | Self::FrictionDrift { .. }
             | Self::ViscousDrift { .. }
             | Self::LoadDependence
+            | Self::InertialLoad
             | Self::PositionFriction { .. }
             | Self::FrictionTaper
             | Self::LoadFriction { .. } => "friction",
@@ -168,6 +171,32 @@ impl Shape {
         matches!((self, other), (Self::Spring, Self::Constant))
     }
 
+    /// Share of the effort's power that it must take. What acts at reversals, or through the motion's higher derivatives, is
+    /// never quite as it is formulated here; what hangs on the place or on a channel is known by that.
+    pub(super) fn least_of_effort(&self) -> f64 {
+        match self {
+            Self::Stribeck { .. }
+            | Self::Presliding { .. }
+            | Self::LoadDependence
+            | Self::InertialLoad
+            | Self::Hysteresis { .. }
+            | Self::Lag
+            | Self::Flexible
+            | Self::Mode { .. }
+            | Self::Backlash { .. } => 1e-4,
+            Self::Spring
+            | Self::FrictionTaper
+            | Self::PositionFriction { .. }
+            | Self::Ripple { .. }
+            | Self::MotorRipple { .. }
+            | Self::Load { .. }
+            | Self::LoadFriction { .. }
+            | Self::LoadGain { .. }
+            | Self::LoadRipple { .. } => 1e-6,
+            _ => 1e-5,
+        }
+    }
+
     /// Whether several of it, each with another number, may act at once.
     pub(super) fn many(&self) -> bool {
         matches!(
@@ -190,6 +219,7 @@ impl Shape {
             Self::ViscousCurve { .. }
             | Self::Quadratic
             | Self::LoadDependence
+            | Self::InertialLoad
             | Self::Spring
             | Self::Hysteresis { .. }
             | Self::DeadZone
@@ -273,6 +303,7 @@ impl Shape {
             Self::ViscousDrift { time_s } => vec![by(&|i| m.v[i] * warm(time_s, i))],
             Self::BiasDrift { time_s } => vec![by(&|i| warm(time_s, i))],
             Self::LoadDependence => vec![by(&|i| m.s[i] * m.needed[i].abs())],
+            Self::InertialLoad => vec![by(&|i| m.s[i] * m.a[i].abs())],
             Self::PositionFriction { wave_number } => waves(wave_number, &|i| m.s[i]),
             Self::FrictionTaper => vec![by(&|i| m.s[i] * (m.q[i] - middle))],
             // where it is slack is not known

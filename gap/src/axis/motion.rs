@@ -24,6 +24,10 @@ const ENOUGH: f64 = 0.15;
 pub(super) const LEAST_WAVES: f64 = 0.7;
 /// Rows of the balance at most.
 const MOST_ROWS: usize = 12_000;
+/// Steps between neighbouring values that show whether they lie on a grid, how far off it one is, and how many may be.
+const MOST_STEPS: f64 = 5.5;
+const OFF_GRID: f64 = 0.15;
+const MAY_BE_OFF: f64 = 0.3;
 /// Below this share of moving rows the axis is taken to stand.
 const STANDS: f64 = 0.1;
 
@@ -96,7 +100,8 @@ pub(super) fn noise(values: &[f64]) -> f64 {
     (trimmed / 20.0 / 0.62).sqrt().max(step(values) / 12_f64.sqrt())
 }
 
-/// Smallest step between values: the quantisation, where there is one.
+/// Step of the grid that values lie on: the quantisation, where there is one. Values of a fine grid, few of which were met,
+/// lie at any distance from one another, and that is no step.
 pub(super) fn step(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -104,7 +109,12 @@ pub(super) fn step(values: &[f64]) -> f64 {
     let mut steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_by(f64::total_cmp);
     // the tenth percentile is not misled by roundings in a file
-    steps.get(steps.len() / 10).copied().unwrap_or(0.0)
+    let step = steps.get(steps.len() / 10).copied().unwrap_or(0.0);
+    let near = |gap: &f64| *gap < MOST_STEPS * step;
+    let off_grid = |gap: &f64| (gap / step - (gap / step).round()).abs() > OFF_GRID;
+    let (near, off) =
+        (steps.iter().filter(|gap| near(gap)).count(), steps.iter().filter(|gap| near(gap) && off_grid(gap)).count());
+    if off as f64 > MAY_BE_OFF * near as f64 { 0.0 } else { step }
 }
 
 impl Motion {
@@ -303,5 +313,20 @@ impl Motion {
         } else {
             (3..400).map(|half| f64::from(half) * 0.5 * TAU / self.travel).collect()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::step;
+
+    #[test]
+    fn a_coarse_grid_has_a_step_and_a_fine_one_has_none() {
+        let sweep = |grid: f64| -> Vec<f64> {
+            let at = |k: u32| 1.3 * (1.7e-3 * f64::from(k)).sin() + 0.2 * (3.1e-4 * f64::from(k)).cos();
+            (0..20_000).map(|k| (at(k) / grid).round() * grid).collect()
+        };
+        assert!((step(&sweep(1e-3)) - 1e-3).abs() < 1e-9, "{}", step(&sweep(1e-3)));
+        assert!(step(&sweep(1e-8)) < 1e-12);
     }
 }

@@ -36,9 +36,8 @@ pub(super) struct Problem {
 /// An effect must take this share of the gap that was there, and this share of what is left.
 pub(super) const LEAST_SHARE: f64 = 0.005;
 pub(super) const LEAST_OF_REST: f64 = 0.03;
-/// And this share of the effort's power, below which a model of any form is wrong; and of the floor.
-const LEAST_OF_EFFORT: f64 = 1e-4;
-const LEAST_OF_FLOOR: f64 = 0.1;
+/// And as much as noise has in so many rows.
+const LEAST_ROWS: f64 = 100.0;
 /// Its gain must exceed its own standard error over blocks by this factor.
 const LEAST_T: f64 = 2.5;
 /// A gain that is most of what was left is no chance where it is there in so many folds, however unequal the blocks.
@@ -215,10 +214,13 @@ impl Problem {
             .sum::<f64>()
             / (filled - 1.0);
         let error = (spread / filled).sqrt();
+        // below some share of the effort's power a model of any form is wrong
+        let added = longer.members.iter().filter(|member| !shorter.members.contains(member));
+        let of_effort = added.map(|&member| self.candidates[member].shape.least_of_effort()).fold(0.0, f64::max);
         let least = (self.least_share * gap)
             .max(LEAST_OF_REST * rest)
-            .max(LEAST_OF_EFFORT * self.effort_square)
-            .max(LEAST_OF_FLOOR * self.floor_square);
+            .max(of_effort * self.effort_square)
+            .max(LEAST_ROWS * self.floor_square / self.grams.counts.iter().sum::<f64>().max(1.0));
         let broad =
             || gain > MOST_OF_REST * rest && folds(&gains).iter().filter(|gain| **gain > 0.0).count() >= FOLDS_WITH;
         rest > 0.0 && gain > effects * least && (mean > LEAST_T * error || broad())

@@ -18,6 +18,7 @@ pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
         Shape::Asymmetry,
         Shape::Quadratic,
         Shape::LoadDependence,
+        Shape::InertialLoad,
         Shape::FrictionTaper,
         Shape::Spring,
         Shape::DeadZone,

@@ -1,7 +1,7 @@
 //! What a log and a model give before anything is taken for noise: nominal prediction, sensitivities to everything, what
 //! a torque on the gimbal does.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use gimbal_model_file::ModelFile;
 
@@ -44,7 +44,7 @@ pub(crate) struct Ground<'a> {
     /// After an impulse of torque, and what noise looks like behind the loop.
     impulse: Impulse,
     plans: Plans,
-    shapes: Vec<Shapes>,
+    shapes: Arc<Vec<Shapes>>,
     valid: Vec<bool>,
     /// Rows at which the bearing turns around, and what the noise of the rate does there.
     turns: Vec<bool>,
@@ -109,7 +109,7 @@ impl<'a> Ground<'a> {
             record,
             stop_rad: model.config.gyro.stop_angle_rad,
             target: scaled(target, &over_noise),
-            shapes: Shapes::of(&impulse, &signals, &plans, record.inputs.period_s),
+            shapes: Arc::new(Shapes::of(&impulse, &signals, &plans, record.inputs.period_s)),
             impulse,
             plans,
             valid: valid(record),
@@ -180,6 +180,8 @@ impl<'a> Ground<'a> {
             columns,
             whitened: Vec::new(),
             gram: nalgebra::DMatrix::zeros(0, 0),
+            shapes: self.shapes.clone(),
+            impulse_nm: self.impulse.torque_nm,
             whitener,
             path,
             turns_mostly: mostly(&self.turns),

@@ -168,13 +168,24 @@ impl Bands {
 
     /// The shapes that make the measured powers most likely.
     pub(super) fn fit(&self, shapes: &Shapes) -> Noise {
+        self.fitted(shapes, f64::INFINITY).1
+    }
+
+    /// How much likelier the measured powers are where the noise of the logged inputs may have any size than where it has
+    /// at most this one [nats].
+    pub(super) fn beyond_inputs(&self, shapes: &Shapes, most: f64) -> f64 {
+        0.5 * (self.fitted(shapes, most).0 - self.fitted(shapes, f64::INFINITY).0)
+    }
+
+    /// -2 ln of the likelihood, and the shapes, with l at most so large.
+    fn fitted(&self, shapes: &Shapes, most_inputs: f64) -> (f64, Noise) {
         let from_hz = self.hz.first().copied().unwrap_or(0.0);
         let mut best = (
             f64::MAX,
             Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0, flickers: false, from_hz },
         );
         if !self.any() {
-            return best.1;
+            return best;
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
@@ -204,6 +215,7 @@ impl Bands {
                 for part in 0..4 {
                     share[part] *= up[part] / down[part].max(1e-300);
                 }
+                share[1] = share[1].min(most_inputs * peaks[0]);
             }
             let unlikely: f64 = bases
                 .iter()
@@ -221,6 +233,6 @@ impl Bands {
                 best = (unlikely, Noise { white, inputs, in_loop, low, corner_hz, flickers, from_hz });
             }
         }
-        best.1
+        best
     }
 }

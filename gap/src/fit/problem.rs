@@ -1,5 +1,7 @@
 //! One log against one model: base prediction, sensitivities to everything, noise.
 
+use std::sync::Arc;
+
 use gimbal_model_file::ModelFile;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -8,6 +10,7 @@ use super::ground::Ground;
 use super::normal::{gram, narrow, products, slices};
 use super::path::Path;
 use super::pull::Pull;
+use super::shapes::Shapes;
 use super::signals::{Kept, Signals, of_channel, residual, scaled};
 use super::{Fit, Whitener};
 use crate::library::{Candidate, Nuisance};
@@ -69,6 +72,9 @@ pub struct Problem<'a> {
     pub gram: DMatrix<f64>,
     /// Noise.
     pub whitener: Whitener,
+    /// What noise looks like in each channel, that of the inputs as a torque of so much at every row [N m].
+    pub(super) shapes: Arc<Vec<Shapes>>,
+    pub(super) impulse_nm: f64,
     /// What a torque on the gimbal does, as long as the bearing does not turn around.
     pub path: Path,
     /// Whether it hardly ever moves one way for long.
@@ -138,6 +144,12 @@ impl<'a> Problem<'a> {
     pub fn whiten(&self, signals: Signals) -> Vec<f64> {
         let over_noise: Vec<f64> = self.noise.iter().map(|noise| 1.0 / noise).collect();
         self.whitener.apply(&scaled(signals, &over_noise))
+    }
+
+    /// What speaks for a torque at random in what a fit leaves, beyond one that the noise of the logged inputs makes [nats].
+    pub(crate) fn torque_at_random(&self, whitened: &[f64], inputs_nm: f64) -> f64 {
+        let most = (inputs_nm / self.impulse_nm).powi(2);
+        self.whitener.beyond_inputs(whitened, &self.shapes, most, self.record.inputs.period_s)
     }
 
     /// A torque on the gimbal as the whitened channels show it [N m].

@@ -9,7 +9,8 @@
 //!
 //! A torque at random depends on nothing; that all sensors show the same one tells it from their noise, whatever the
 //! spectra of that are: its gain is the square of their agreement, away from where the bearing turns around, as noise of
-//! the rate is a torque there.
+//! the rate is a torque there. One sensor alone shows it by its power over frequency, which is that of a torque behind the
+//! loop, where that is more than the noise of the logged inputs makes.
 
 use std::fmt;
 
@@ -26,7 +27,10 @@ use crate::record::rough;
 const APART: f64 = 0.05;
 /// A torque that is a function of nothing, and up to where sensors may agree on one [Hz].
 const AT_RANDOM: &str = "a torque at random that several sensors show";
+const LIKE_NOISE: &str = "a torque at random, more than the noise of the logged inputs makes";
 const AGREED_HZ: f64 = 32.0;
+/// How many times the torque that it seems to make the noise of the logged inputs may be taken for.
+const INPUTS_KNOWN: f64 = 2.0;
 /// Parts of the log, in one of which no vibration hides the noise of the specific force, and what that is at most at
 /// these rates [m/s^2]: 90 ug/sqrt(Hz) up to 500 Hz.
 const PARTS: usize = 20;
@@ -96,24 +100,34 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         })
         .collect();
     let counts = if problem.turns_mostly { 1.0 } else { AGREED_COUNTS };
-    strangers.push(Stranger { of: AT_RANDOM, gain: agreement(problem, fit).powi(2), torques: 1, choice: 0.0, counts });
+    let inputs_nm = torque_of_inputs(problem, fit);
+    let gain = agreement(problem, fit, inputs_nm).powi(2);
+    strangers.push(Stranger { of: AT_RANDOM, gain, torques: 1, choice: 0.0, counts });
+    if !problem.turns_mostly {
+        let gain = 2.0 * problem.torque_at_random(&fit.residual, INPUTS_KNOWN * inputs_nm);
+        strangers.push(Stranger { of: LIKE_NOISE, gain, torques: 1, choice: 0.0, counts: 1.0 });
+    }
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
     strangers
 }
 
-/// How far the channels agree on a torque, in standard deviations, beyond what noise of the logged specific force is to
-/// the unbalance; none of it where the bearing turns around.
-fn agreement(problem: &Problem, fit: &Fit) -> f64 {
+/// How far the channels agree on a torque, in standard deviations, beyond what noise of the logged inputs is to the
+/// gimbal; none of it where the bearing turns around.
+fn agreement(problem: &Problem, fit: &Fit, inputs_nm: f64) -> f64 {
     let mut residual = fit.residual.clone();
     let rows = residual.chunks_exact_mut(problem.record.channels.len());
     for (row, _) in rows.zip(steady(&problem.turns)).filter(|(_, steady)| !steady) {
         row.fill(0.0);
     }
+    problem.path.agreement(&problem.whitener, &residual, AGREED_HZ, inputs_nm).max(0.0)
+}
+
+/// What noise of the logged specific force is to the unbalance [N m].
+fn torque_of_inputs(problem: &Problem, fit: &Fit) -> f64 {
     let unbalance = &fit.physics.config.unbalance;
     let accel_mps2 = problem.record.inputs.accel_mps2.iter();
     let noise_mps2 = accel_mps2.map(|axis| quietest(axis)).fold(0.0, f64::max).min(ACCEL_NOISE_MPS2);
-    let noise_nm = unbalance.x_kg_m.hypot(unbalance.y_kg_m) * noise_mps2;
-    problem.path.agreement(&problem.whitener, &residual, AGREED_HZ, noise_nm).max(0.0)
+    unbalance.x_kg_m.hypot(unbalance.y_kg_m) * noise_mps2
 }
 
 /// Noise of a signal where it is quietest: elsewhere vibration is like noise.

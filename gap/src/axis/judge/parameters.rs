@@ -84,6 +84,10 @@ pub(in crate::axis) fn parameters(
             vec![new("relative", own[0], deviation(samples, 0).hypot(known), one())]
         }
         Shape::LoadDependence => vec![amplitude("relative", one())],
+        Shape::InertialLoad => {
+            let inertia = nominal(model)[0];
+            vec![new("relative", own[0] / inertia, deviation(samples, 0) / inertia, one())]
+        }
         Shape::Lag | Shape::RateDelay => vec![amplitude("time_s", "s".to_owned())],
         Shape::Quadratic => vec![amplitude("coefficient", format!("{effort} s2/{length}2"))],
         Shape::ViscousCurve { .. } => vec![amplitude("coefficient", format!("{effort} (s/{length})^exponent"))],
