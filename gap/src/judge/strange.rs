@@ -37,6 +37,8 @@ const PARTS: usize = 20;
 const ACCEL_NOISE_MPS2: f64 = 0.02;
 /// What one nat of it counts where the bearing seldom turns around: no effect in another formulation leaves it.
 const AGREED_COUNTS: f64 = 2.0;
+/// The same of the power of one sensor, whose own noise may have a spectrum not unlike it.
+const LIKE_NOISE_COUNTS: f64 = 0.5;
 /// Precision of a torque's size: none, but for what keeps equations regular.
 const FREE: f64 = 1e-9;
 
@@ -105,7 +107,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     strangers.push(Stranger { of: AT_RANDOM, gain, torques: 1, choice: 0.0, counts });
     if !problem.turns_mostly {
         let gain = 2.0 * problem.torque_at_random(&fit.residual, INPUTS_KNOWN * inputs_nm);
-        strangers.push(Stranger { of: LIKE_NOISE, gain, torques: 1, choice: 0.0, counts: 1.0 });
+        strangers.push(Stranger { of: LIKE_NOISE, gain, torques: 1, choice: 0.0, counts: LIKE_NOISE_COUNTS });
     }
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
     strangers
