@@ -110,11 +110,9 @@ pub(super) fn step(values: &[f64]) -> f64 {
     steps.sort_by(f64::total_cmp);
     // the tenth percentile is not misled by roundings in a file
     let step = steps.get(steps.len() / 10).copied().unwrap_or(0.0);
-    let near = |gap: &f64| *gap < MOST_STEPS * step;
-    let off_grid = |gap: &f64| (gap / step - (gap / step).round()).abs() > OFF_GRID;
-    let (near, off) =
-        (steps.iter().filter(|gap| near(gap)).count(), steps.iter().filter(|gap| near(gap) && off_grid(gap)).count());
-    if off as f64 > MAY_BE_OFF * near as f64 { 0.0 } else { step }
+    let near = &steps[..steps.partition_point(|gap| *gap < MOST_STEPS * step)];
+    let off = near.iter().filter(|gap| (**gap / step - (**gap / step).round()).abs() > OFF_GRID).count();
+    if off as f64 > MAY_BE_OFF * near.len() as f64 { 0.0 } else { step }
 }
 
 impl Motion {
