@@ -50,6 +50,11 @@ pub enum Problem {
         /// The known name that is nearest.
         nearest: String,
     },
+    /// The model of a plain axis where that of a platform is needed.
+    #[error(
+        "[axis] makes this the model of a plain axis, which `gimbal gap` alone reads; give the model of a platform here"
+    )]
+    PlainAxis,
     /// A key outside of every table.
     #[error("`{name}` stands outside of every table; {hint}")]
     Homeless {

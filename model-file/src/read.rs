@@ -254,6 +254,9 @@ fn preset(value: &DeValue) -> Result<Preset, Problem> {
 const TABLES: [&str; 3] = ["tolerance", "effects", "known_good"];
 
 fn unknown_table(name: &str, tables: &toml::Table) -> Problem {
+    if name == "axis" {
+        return Problem::PlainAxis;
+    }
     let known = tables.keys().map(String::as_str).chain(TABLES);
     Problem::UnknownTable { name: name.to_owned(), nearest: nearest(name, known) }
 }

@@ -50,6 +50,12 @@ fn contract_an_unknown_table_is_told_with_the_nearest() {
 }
 
 #[test]
+fn contract_the_model_of_a_plain_axis_is_told_as_such() {
+    let message = told("[axis]\nmotion = \"linear\"\n");
+    assert!(message.starts_with("m.toml: line 1, column 2: [axis] makes this the model of a plain axis"), "{message}");
+}
+
+#[test]
 fn contract_a_key_outside_of_its_table_is_told_with_its_home() {
     let message = told("motor_lag_s = 0.001\n");
     let expected = "m.toml: line 1, column 1: `motor_lag_s` stands outside of every table; write it below [servo]";

@@ -2,6 +2,7 @@
 
 use gimbal_model_file::AxisModel;
 
+use super::floor::floor_left;
 use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
@@ -11,6 +12,11 @@ use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
 use super::tried::shapes;
 use super::waves::waves;
 
+/// Rate up to which friction may come up to its level, over the fastest, and what a rounder corner must leave at most of the
+/// root mean square.
+const WIDEST_ROUNDING: f64 = 0.03;
+const ROUNDED: f64 = 0.9;
+const ROUNDER: f64 = 1.25;
 /// Rows at which friction is looked at.
 const SLIP_ROWS: usize = 400;
 /// Slip is steady where its direction is smoothed by no more than this.
@@ -66,6 +72,23 @@ pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
     ([fit[0], fit[1], fit[2], fit[3]], rest)
 }
 
+/// The motion with the friction that comes up to its level at the rate that explains most: an axis that creeps to rest has
+/// less than all of it, and how much is no effect. Wider than the least only where that leaves a good deal less.
+fn rounded(motion: Motion) -> Motion {
+    let (_, sharp) = plain(&motion);
+    let widest = WIDEST_ROUNDING * motion.fastest;
+    let rates = std::iter::successors(Some(ROUNDER * motion.quiet), |rate| Some(ROUNDER * rate))
+        .take_while(|rate| *rate < widest);
+    let of = |rate: f64| {
+        let motion = motion.clone().with_full_friction_at(rate);
+        (plain(&motion).1, motion)
+    };
+    match rates.map(of).min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((rest, round)) if rest < ROUNDED * sharp => round,
+        _ => motion,
+    }
+}
+
 /// Root mean square of what the nominal model leaves.
 pub(super) fn nominal_rest(motion: &Motion, model: &AxisModel) -> f64 {
     let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
@@ -76,7 +99,8 @@ pub(super) fn nominal_rest(motion: &Motion, model: &AxisModel) -> f64 {
 
 impl Balance {
     /// Makes the balance and every column.
-    pub(super) fn new(mut motion: Motion, model: &AxisModel) -> Self {
+    pub(super) fn new(motion: Motion, model: &AxisModel) -> Self {
+        let mut motion = rounded(motion);
         let (found, rest) = plain(&motion);
         motion.needed = needed(&motion, if motion.stands { [0.0, 0.0, model.coulomb, 0.0] } else { found });
         motion.size = rms(&motion.needed).max(1e-30);
@@ -161,6 +185,8 @@ impl Balance {
         let mut best = self.problem.search(Vec::new());
         for _ in 0..2 {
             let residual = self.residual(&best.members);
+            self.motion.floor = floor_left(&self.motion, &residual);
+            self.problem.floor_square = self.motion.floor.powi(2) * residual.len() as f64;
             let rest = rms(&residual);
             let lag = correlation(&residual);
             set_priors(&mut self.problem.grams, model, rest, &self.motion, lag);

@@ -136,6 +136,15 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     let after = balance.residual(&best.members);
     let law = super::law::law_of(&log, &checked, model, &balance.motion);
     judged.doubt_law(law.left);
+    if let Some(beat) = super::beat::beat(motion, &after) {
+        judged.doubt_beat(beat.share);
+        notes.push(format!(
+            "what is left beats at {:.2} Hz, which the motion does not ({:.0} % of its power): a force in time, whatever the \
+             axis does",
+            beat.hz,
+            100.0 * beat.share
+        ));
+    }
     let contribution: Vec<f64> = balance.target.iter().zip(&after).map(|(before, after)| before - after).collect();
     let mut found = judged.found;
     let mut verdict = judged.verdict;
@@ -228,7 +237,8 @@ fn score(
     log: AxisLog,
     notes: &mut Vec<String>,
 ) -> Vec<Shrunk> {
-    let (_, checked, mut motion) = ready(log, model);
+    let (_, checked, motion) = ready(log, model);
+    let mut motion = motion.with_full_friction_at(balance.motion.full_at);
     if Some(balance.motion.from) != checked.from {
         notes.push(format!("{name}: its motion is taken from the other column"));
     }

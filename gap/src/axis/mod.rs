@@ -3,9 +3,11 @@
 //! The method, its library and its limits: `docs/axis.md`.
 
 mod balance;
+mod beat;
 mod columns;
 mod diagnose;
 mod experiment;
+mod floor;
 mod follows;
 mod judge;
 mod law;

@@ -51,7 +51,7 @@ pub(super) struct Motion {
     pub(super) q: Vec<f64>,
     pub(super) v: Vec<f64>,
     pub(super) a: Vec<f64>,
-    /// Direction: rate over the quiet rate, clamped; of a standing axis the direction of its last motion.
+    /// Direction: rate over that of full friction, clamped; of a standing axis the direction of its last motion.
     pub(super) s: Vec<f64>,
     /// Effort; held efforts moved to the middle of what they act over.
     pub(super) effort: Vec<f64>,
@@ -70,15 +70,17 @@ pub(super) struct Motion {
     pub(super) block: Vec<usize>,
     /// Rows of the log from one row of the grid to the next.
     pub(super) thin: usize,
-    /// Rate below which the direction is not known.
+    /// Rate below which the direction is not known, and the rate at which friction has come up to its level.
     pub(super) quiet: f64,
+    pub(super) full_at: f64,
     /// Largest rate, and the span of positions.
     pub(super) fastest: f64,
     pub(super) travel: f64,
     /// Noise of one position [m or rad], or of one rate.
     pub(super) position_noise: f64,
-    /// Noise that motion and effort bring into the balance.
+    /// Noise that motion and effort bring into the balance, and that of the motion alone.
     pub(super) floor: f64,
+    pub(super) motion_floor: f64,
     /// Noise of rate and acceleration on the grid.
     pub(super) rate_noise: f64,
     pub(super) acceleration_noise: f64,
@@ -214,7 +216,8 @@ impl Motion {
             rows = steady;
         }
         let block = rows.iter().map(|row| row * BLOCKS / v.len()).collect();
-        let floor = (model.inertia * noise_at(band_hz)).hypot(effort_noise * whole.noise_gain());
+        let motion_floor = model.inertia * noise_at(band_hz);
+        let floor = motion_floor.hypot(effort_noise * whole.noise_gain());
         Self {
             from,
             period_s,
@@ -235,15 +238,26 @@ impl Motion {
             block,
             thin,
             quiet,
+            full_at: quiet,
             fastest,
             travel: high - low,
             position_noise,
             floor,
+            motion_floor,
             rate_noise,
             acceleration_noise: noise_at(band_hz),
             at_rest,
             stands,
         }
+    }
+
+    /// The same with friction that comes up to its level at such a rate.
+    pub(super) fn with_full_friction_at(mut self, rate: f64) -> Self {
+        if !self.stands && rate != self.full_at {
+            self.full_at = rate;
+            self.s = self.v.iter().map(|v| (v / rate).clamp(-1.0, 1.0)).collect();
+        }
+        self
     }
 
     /// Standard deviation of the whole smoothing [rows].

@@ -6,6 +6,9 @@ use super::regress::Grams;
 
 /// Numbers of waves that are kept from the search, for each kind of ripple.
 const KEPT_WAVES: usize = 12;
+/// Share of its power that must pass the smoothing.
+const LEAST_PASSED: f64 = 0.1;
+
 /// Ripples whose number of waves stands out in what the parameters leave.
 pub(super) fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<Shape> {
     let mut all = base.to_vec();
@@ -30,6 +33,7 @@ pub(super) fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<S
         let mut found: Vec<(f64, f64)> = {
             use rayon::prelude::*;
             let carried: Vec<f64> = (0..q.len()).map(carrier).collect();
+            let all: f64 = carried.iter().map(|value| value * value).sum();
             let sigma_s = motion.period_s * motion.whole_sigma();
             numbers
                 .par_iter()
@@ -48,7 +52,8 @@ pub(super) fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<S
                         im += wave * rest[i] * sin;
                         power += wave * wave;
                     }
-                    ((re * re + im * im) / power, k)
+                    // one that passes at slow rows alone is a function of rests
+                    if power > LEAST_PASSED * all { ((re * re + im * im) / power, k) } else { (0.0, k) }
                 })
                 .collect()
         };
@@ -64,7 +69,7 @@ pub(super) fn waves(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<S
         found = peaks;
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         let kept = if kind == 0 { KEPT_WAVES } else { KEPT_WAVES / 2 };
-        shapes.extend(found.iter().take(kept).map(|(_, k)| shape(*k)));
+        shapes.extend(found.iter().filter(|(gain, _)| *gain > 0.0).take(kept).map(|(_, k)| shape(*k)));
     }
     shapes
 }

@@ -12,6 +12,8 @@ const NEAR: f64 = 0.98;
 /// A fit leaves so many times the noise from where on a ceiling is worth the time, beside effects or without a sensor that
 /// shows it.
 const WORTH: f64 = 1.02;
+/// Ceilings over what a sensor shows, whose noise is in the highest that it held for some rows.
+const SHARES_SHOWN: [f64; 6] = [1.0, 0.99, 0.98, 0.97, 0.95, 0.92];
 /// Ceilings that no sensor shows, over the highest torque that is predicted.
 const SHARES: [f64; 12] = [0.99, 0.97, 0.94, 0.9, 0.85, 0.8, 0.74, 0.68, 0.6, 0.5, 0.4, 0.3];
 
@@ -35,16 +37,17 @@ pub(super) fn saturated(problem: &Problem, from: &Fit) -> Option<Fit> {
 fn ceiling_nm(problem: &Problem, from: &Fit, set: &Set) -> Option<f64> {
     let sensor = from.physics.measurement.torque_factor;
     let highest_nm = peak(&from.prediction.motor_torque_nm) / sensor;
-    if let Some(shown_nm) = problem.ceiling_nm {
-        return Some(shown_nm / sensor).filter(|ceiling_nm| highest_nm > NEAR * ceiling_nm);
-    }
-    let at = |share: f64| {
+    let ceilings_nm: Vec<f64> = match problem.ceiling_nm.map(|shown_nm| shown_nm / sensor) {
+        Some(shown_nm) if highest_nm > NEAR * shown_nm => SHARES_SHOWN.iter().map(|share| share * shown_nm).collect(),
+        Some(_) => return None,
+        None => SHARES.iter().map(|share| share * highest_nm).collect(),
+    };
+    let at = |ceiling_nm: &f64| {
         let mut values = from.values.clone();
-        values.push(vec![share * highest_nm]);
+        values.push(vec![*ceiling_nm]);
         (set.clone(), Point { values, ..from.point(problem) })
     };
-    let tries = SHARES.map(at);
-    let squares = left(problem, &tries);
-    let least = squares.iter().zip(SHARES).min_by(|a, b| a.0.total_cmp(b.0))?;
-    (*least.0 < from.square).then_some(least.1 * highest_nm)
+    let squares = left(problem, &ceilings_nm.iter().map(at).collect::<Vec<_>>());
+    let (square, ceiling_nm) = squares.iter().zip(&ceilings_nm).min_by(|a, b| a.0.total_cmp(b.0))?;
+    (problem.ceiling_nm.is_some() || *square < from.square).then_some(*ceiling_nm)
 }

@@ -6,8 +6,8 @@
 //!
 //! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
 //! to the channel), n the pick-off's noise as the servo answers it ([`super::shapes`]), b noise of low frequency with
-//! its corner and its slope: s = 1 is flicker, which has no corner in the log or one where it ends. Only what has one of
-//! these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so that what happens now and then is no
+//! its corner and its slope: s = 1 is flicker, which has no corner in the log or one where it ends, and which a filter may
+//! end at a higher frequency. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so that what happens now and then is no
 //! noise either.
 
 use super::plans::Plans;
@@ -15,8 +15,14 @@ use super::shapes::Shapes;
 
 /// Rows of a segment.
 pub(super) const SEGMENT: usize = 4096;
-/// Bands in which power is taken, and steps of the fit.
+/// Bands in which power is taken, the lowest line of them, and steps of the fit.
 const BANDS: usize = 36;
+const FIRST_LINE: f64 = 1.5;
+/// Rows of a segment for what is slower, its bands, and what a degree of freedom counts there: what has been fitted took
+/// some of them.
+const LONG_SEGMENT: usize = 8 * SEGMENT;
+const SLOW_BANDS: usize = 6;
+const SLOW_COUNTS: f64 = 0.5;
 const STEPS: usize = 120;
 /// What noise of low frequency must bring: few lines show it, and it hides what is slow [nats].
 const SHOWN_NATS: f64 = 1.5;
@@ -24,6 +30,7 @@ const SHOWN_NATS: f64 = 1.5;
 /// nothing is measured [Hz], [nats].
 const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
 const FLICKER_CORNERS_HZ: [f64; 3] = [0.05, 1.0, 10.0];
+const FLICKER_ENDS_HZ: [f64; 3] = [25.0, 60.0, 150.0];
 const FLICKER_NATS: f64 = 3.5;
 
 /// Power of a channel's noise over frequency, 1 for white noise of unit variance.
@@ -37,17 +44,47 @@ pub struct Noise {
     pub in_loop: f64,
     /// b.
     pub low: f64,
-    /// `f_c` [Hz].
-    pub corner_hz: f64,
-    /// Whether s is 1.
-    pub flickers: bool,
+    /// Its shape.
+    pub slow: Slow,
     /// Lowest frequency at which it was measured [Hz].
     pub from_hz: f64,
 }
 
+/// Shape of noise of low frequency.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Slow {
+    /// There is none.
+    None,
+    /// `1 / (1 + (f / f_c)^2)`, `f_c` in Hz.
+    Steep(f64),
+    /// `1 / (1 + f / f_c)`.
+    Flicker(f64),
+    /// The same from below all logs on, behind a lag: `1 / ((1 + f / f_c) (1 + (f / f_e)^2))`, `f_e` in Hz.
+    Filtered(f64),
+}
+
+impl Slow {
+    /// All that are tried, and what each must bring [nats].
+    fn all() -> impl Iterator<Item = (Self, f64)> {
+        let steep = CORNERS_HZ.map(|corner_hz| (Self::Steep(corner_hz), SHOWN_NATS));
+        let flicker = FLICKER_CORNERS_HZ.map(|corner_hz| (Self::Flicker(corner_hz), FLICKER_NATS));
+        let filtered = FLICKER_ENDS_HZ.map(|end_hz| (Self::Filtered(end_hz), FLICKER_NATS));
+        std::iter::once((Self::None, 0.0)).chain(steep).chain(flicker).chain(filtered)
+    }
+
+    fn at(self, hz: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Steep(corner_hz) => 1.0 / (1.0 + (hz / corner_hz).powi(2)),
+            Self::Flicker(corner_hz) => 1.0 / (1.0 + hz / corner_hz),
+            Self::Filtered(end_hz) => Self::Flicker(FLICKER_CORNERS_HZ[0]).at(hz) * Self::Steep(end_hz).at(hz),
+        }
+    }
+}
+
 impl Noise {
     pub(super) fn power(&self, hz: f64, [inputs, in_loop]: [f64; 2]) -> f64 {
-        self.white + self.inputs * inputs + self.in_loop * in_loop + self.low * low(hz, (self.corner_hz, self.flickers))
+        self.white + self.inputs * inputs + self.in_loop * in_loop + self.low * self.slow.at(hz)
     }
 
     /// At the lines of a transform. Below what was measured it does not fall: which of the shapes the noise has, a few
@@ -60,12 +97,6 @@ impl Noise {
         };
         (0..=last).map(at).collect()
     }
-}
-
-/// The shape of noise of low frequency; of none without a corner.
-fn low(hz: f64, (corner_hz, flickers): (f64, bool)) -> f64 {
-    let over = hz / corner_hz;
-    if corner_hz > 0.0 { 1.0 / (1.0 + if flickers { over } else { over * over }) } else { 0.0 }
 }
 
 /// What power is taken of.
@@ -83,12 +114,35 @@ pub(super) struct Bands {
     pub(super) power: Vec<f64>,
     /// Degrees of freedom.
     weight: Vec<f64>,
+    /// How many of the first are of longer segments.
+    slow: usize,
 }
 
 impl Bands {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
+    /// Of segments, and of longer ones for what is slower than these show.
     pub(super) fn new(values: &[f64], valid: &[bool], of: Of, period_s: f64) -> Self {
+        let mut bands = Self { hz: Vec::new(), power: Vec::new(), weight: Vec::new(), slow: 0 };
         let length = SEGMENT.min(values.len());
+        let shortest_hz = FIRST_LINE / (Plans::new(length).length() as f64 * period_s);
+        let long = LONG_SEGMENT.min(values.len());
+        if long >= 2 * length {
+            bands.add(values, valid, of, period_s, (long, shortest_hz, SLOW_BANDS, SLOW_COUNTS));
+            bands.slow = bands.hz.len();
+        }
+        bands.add(values, valid, of, period_s, (length, 0.5 / period_s, BANDS, 1.0));
+        bands
+    }
+
+    /// Bands of segments of one length, up to a frequency; what a degree of freedom of theirs counts.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
+    fn add(
+        &mut self,
+        values: &[f64],
+        valid: &[bool],
+        of: Of,
+        period_s: f64,
+        (length, last, bands, counts): (usize, f64, usize, f64),
+    ) {
         let plans = Plans::new(length);
         let window: Vec<f64> =
             (0..length).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / length as f64).cos()).collect();
@@ -107,10 +161,9 @@ impl Bands {
             }
         }
         let step_hz = 1.0 / (plans.length() as f64 * period_s);
-        let (first, last) = (1.5 * step_hz, 0.5 / period_s);
-        let edge = |band: usize| first * (last / first).powf(band as f64 / BANDS as f64);
-        let mut bands = Self { hz: Vec::new(), power: Vec::new(), weight: Vec::new() };
-        for band in 0..BANDS {
+        let first = FIRST_LINE * step_hz;
+        let edge = |band: usize| first * (last / first).powf(band as f64 / bands as f64);
+        for band in 0..bands {
             let (from, to) = ((edge(band) / step_hz).ceil() as usize, (edge(band + 1) / step_hz).ceil() as usize);
             let to = to.min(plans.length() / 2);
             if segments.is_empty() || to <= from {
@@ -122,14 +175,13 @@ impl Bands {
             // the median of a chi square of n degrees over its mean
             let n = 2.0 * (to - from) as f64 * length as f64 / plans.length() as f64;
             let median = (1.0 - 2.0 / (9.0 * n.max(1.0))).powi(3);
-            bands.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
-            bands.power.push(match of {
+            self.hz.push(0.5 * (from + to - 1) as f64 * step_hz);
+            self.power.push(match of {
                 Of::Most => 0.5 * (means[(means.len() - 1) / 2] + means[means.len() / 2]) / median,
                 Of::All => means.iter().sum::<f64>() / means.len() as f64,
             });
-            bands.weight.push(n * segments.len() as f64);
+            self.weight.push(counts * n * segments.len() as f64);
         }
-        bands
     }
 
     pub(super) fn any(&self) -> bool {
@@ -139,7 +191,7 @@ impl Bands {
     /// How sure it is that the lowest bands together have less power than 1, up to whichever of them that shows most [nats].
     pub(super) fn below_one(&self) -> f64 {
         let (mut power, mut weight, mut most) = (0.0, 0.0, 0.0_f64);
-        for (band, own) in self.power.iter().zip(&self.weight) {
+        for (band, own) in self.power.iter().zip(&self.weight).skip(self.slow) {
             power += own * band;
             weight += own;
             let mean: f64 = power / weight;
@@ -180,23 +232,17 @@ impl Bands {
     /// -2 ln of the likelihood, and the shapes, with l at most so large.
     fn fitted(&self, shapes: &Shapes, most_inputs: f64) -> (f64, Noise) {
         let from_hz = self.hz.first().copied().unwrap_or(0.0);
-        let mut best = (
-            f64::MAX,
-            Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, corner_hz: 1.0, flickers: false, from_hz },
-        );
+        let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, slow: Slow::None, from_hz });
         if !self.any() {
             return best;
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
         let peaks = [peak(0), peak(1)];
-        let flickering = FLICKER_CORNERS_HZ.map(|corner_hz| (corner_hz, true, FLICKER_NATS));
-        let steep = CORNERS_HZ.map(|corner_hz| (corner_hz, false, SHOWN_NATS));
-        let slow = steep.into_iter().chain(flickering);
-        for (corner_hz, flickers, must_bring) in std::iter::once((0.0, false, 0.0)).chain(slow) {
+        for (slow, must_bring) in Slow::all() {
             let basis = |&hz: &f64| {
                 let [inputs, in_loop] = shapes.at(hz);
-                [1.0, inputs / peaks[0], in_loop / peaks[1], low(hz, (corner_hz, flickers))]
+                [1.0, inputs / peaks[0], in_loop / peaks[1], slow.at(hz)]
             };
             let bases: Vec<[f64; 4]> = self.hz.iter().map(basis).collect();
             let mut share = [mean, 0.1 * mean, 0.1 * mean, 0.1 * mean];
@@ -230,7 +276,7 @@ impl Bands {
             if unlikely < best.0 {
                 let [white, inputs, in_loop, low] = share;
                 let (inputs, in_loop) = (inputs / peaks[0], in_loop / peaks[1]);
-                best = (unlikely, Noise { white, inputs, in_loop, low, corner_hz, flickers, from_hz });
+                best = (unlikely, Noise { white, inputs, in_loop, low, slow, from_hz });
             }
         }
         best

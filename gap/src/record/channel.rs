@@ -32,6 +32,9 @@ impl Signal {
 
 /// Rows for which a value is held.
 const HELD: usize = 5;
+/// Time from whose samples the beginning is taken, and how many there must be [s].
+const BEGINNING_S: f64 = 0.02;
+const FEWEST: usize = 4;
 
 /// One measured output on the grid.
 #[derive(Debug, Clone)]
@@ -60,6 +63,21 @@ impl Channel {
         let sizes: Vec<f64> =
             self.values.iter().zip(&self.valid).map(|(value, valid)| if *valid { value.abs() } else { 0.0 }).collect();
         sizes.windows(HELD).map(|few| few.iter().copied().fold(f64::MAX, f64::min)).fold(0.0, f64::max)
+    }
+
+    /// Value with which it begins, of a line through its first samples; none where most are missing.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of rows")]
+    pub(super) fn beginning(&self, period_s: f64) -> Option<f64> {
+        let rows = ((BEGINNING_S / period_s) as usize).max(FEWEST).min(self.values.len());
+        let known: Vec<(f64, f64)> =
+            (0..rows).filter(|&row| self.valid[row]).map(|row| (row as f64 * period_s, self.values[row])).collect();
+        if known.len() < FEWEST || 2 * known.len() < rows {
+            return None;
+        }
+        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| known.iter().map(of).sum::<f64>() / known.len() as f64;
+        let (time_s, value) = (mean(&|known| known.0), mean(&|known| known.1));
+        let slope = mean(&|known| (known.0 - time_s) * (known.1 - value)) / mean(&|known| (known.0 - time_s).powi(2));
+        Some(value - slope * time_s)
     }
 
     /// Takes samples that stand alone for missing, and says so.

@@ -4,7 +4,7 @@
 use gimbal_model_file::ModelFile;
 
 use super::{Record, Signal};
-use crate::simulate::{Begin, Inputs, Physics, predict};
+use crate::simulate::{Inputs, Physics, predict};
 
 /// A mistake is told when undoing it leaves less than this share of the misfit.
 const MENDED: f64 = 0.12;
@@ -59,10 +59,8 @@ impl Data {
 pub fn faults(record: &Record, model: &ModelFile) -> Data {
     let mut physics = crate::library::platform(model);
     physics.config.gyro.stop_angle_rad *= 1.5;
-    let first = |signal| record.channel(signal).map(|channel| channel.values[0]);
     let misfit = |inputs: &Inputs| -> (f64, Vec<f64>) {
-        let begin = Begin::at(&physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque));
-        let prediction = predict(&physics, inputs, &begin, usize::MAX);
+        let prediction = predict(&physics, inputs, &record.begin(&physics, inputs), usize::MAX);
         let ratios: Vec<f64> = record
             .channels
             .iter()
@@ -130,14 +128,7 @@ fn beyond(record: &Record, model: &ModelFile) -> Option<String> {
 /// between torque and angle.
 fn outputs(record: &Record, physics: &Physics, ratios: &[f64]) -> (Vec<Signal>, Vec<String>) {
     let (mut turned, mut told) = (Vec::new(), Vec::new());
-    let theta = record.channel(Signal::GyroAngle);
-    let begin = Begin::at(
-        physics,
-        &record.inputs,
-        theta.map_or(0.0, |channel| channel.values[0]),
-        record.channel(Signal::MotorTorque).map(|channel| channel.values[0]),
-    );
-    let prediction = predict(physics, &record.inputs, &begin, usize::MAX);
+    let prediction = predict(physics, &record.inputs, &record.begin(physics, &record.inputs), usize::MAX);
     for (channel, ratio) in record.channels.iter().zip(ratios) {
         if *ratio < 0.25 {
             continue;

@@ -146,10 +146,10 @@ impl Record {
         self.channels.iter().find(|channel| channel.signal == signal)
     }
 
-    /// Where a platform begins that reads as the first row does.
+    /// Where a platform begins that reads as the first rows do.
     #[must_use]
     pub fn begin(&self, physics: &Physics, inputs: &Inputs) -> Begin {
-        let first = |signal| self.channel(signal).filter(|channel| channel.valid[0]).map(|channel| channel.values[0]);
+        let first = |signal| self.channel(signal).and_then(|channel| channel.beginning(self.inputs.period_s));
         Begin::at(physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque))
     }
 

@@ -1,10 +1,11 @@
 //! Predictions of a log: one, or many that differ a little.
 
+use gimbal_servo::Config;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::bearing::Viscous;
-use super::chain::{Chain, FULL, PLAIN, THETA, TORQUE};
+use super::chain::{Chain, FULL, INTEGRATOR, PLAIN, SECTION, THETA, TORQUE};
 use super::discrete::Steps;
 use super::inputs::later;
 use super::machine::Machine;
@@ -72,18 +73,30 @@ impl Prediction {
 }
 
 impl Begin {
-    /// At rest under the first row, with the pick-off angle and motor torque that the log begins with.
+    /// At rest under the first row, with the pick-off angle and motor torque that the log begins with, and a servo that has
+    /// settled at them:
+    ///
+    /// ```text
+    /// section y = (1 - r) in        I = T_m - T5 K theta
+    /// ```
     #[must_use]
     pub fn at(physics: &Physics, inputs: &Inputs, theta_rad: f64, torque_nm: Option<f64>) -> Self {
-        let mut state = [0.0; PLAIN];
+        let Config { servo, bearing, unbalance, .. } = &physics.config;
         let rate = inputs.rate_radps[0];
-        let level = inputs.load_nm[0] + Viscous::new(&physics.config.bearing).torque_nm(rate.abs());
-        let unbalance = &physics.config.unbalance;
-        let disturbance = level * (rate / physics.config.bearing.slip_rate_radps).clamp(-1.0, 1.0)
+        let level = inputs.load_nm[0] + Viscous::new(bearing).torque_nm(rate.abs());
+        let disturbance = level * (rate / bearing.slip_rate_radps).clamp(-1.0, 1.0)
             + unbalance.torque_nm(inputs.accel_mps2[0][0], inputs.accel_mps2[1][0]);
+        let torque_nm = torque_nm.unwrap_or(disturbance);
+        let signal = servo.gain_nm_per_rad_s * theta_rad;
+        let mut state = [0.0; PLAIN];
         state[THETA] = theta_rad;
-        state[super::chain::INTEGRATOR] = torque_nm.unwrap_or(disturbance);
-        state[TORQUE] = torque_nm.unwrap_or(disturbance);
+        for (section, (lag_s, lead_s)) in
+            servo.lag_time_constants_s.iter().zip(&servo.lead_time_constants_s).enumerate()
+        {
+            state[SECTION + section] = (1.0 - lead_s / lag_s) * signal;
+        }
+        state[INTEGRATOR] = torque_nm - servo.lead_time_constants_s[4] * signal;
+        state[TORQUE] = torque_nm;
         Self { state, hysteresis: 0.0 }
     }
 }

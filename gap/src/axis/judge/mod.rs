@@ -29,12 +29,20 @@ const CARRIED: f64 = 0.2;
 const LAW_LEFT: f64 = 0.05;
 /// From this probability of something unknown on nothing is explained.
 const UNEXPLAINED: f64 = 0.6;
+/// Share of what is left from which on a beat is most of it, and how probable something unknown is beside effects.
+const MOST_OF_REST: f64 = 0.2;
+const HALF_UNKNOWN: f64 = 0.5;
 /// Share of the gap that is a trifle.
 const TRIFLE: f64 = 0.01;
 /// Least probability of a set that is not told apart, over that of the set named.
 const RIVAL: f64 = 0.1;
 /// A gap is one from this power over the floor on.
 const NOTABLE: f64 = 1.5;
+/// What is left by nothing that is named is no noise from this many times that on; nor is it where a run of blocks has this
+/// many times the power of the middle one, and of noise.
+const NO_NOISE: f64 = 3.2;
+const RUN: usize = 3;
+const APART: f64 = 4.0;
 /// What is left is no matter of the parameters' tolerances from this many times the noise on: they have been fitted.
 const NOTICED: f64 = 5.0;
 
@@ -93,6 +101,21 @@ impl Judged {
         };
     }
 
+    /// What is left has a line in time: of a gap that it is most of, and beside effects, something is there that is not named.
+    pub(super) fn doubt_beat(&mut self, share: f64) {
+        let unknown = if share > MOST_OF_REST { UNEXPLAINED + 0.2 } else { UNEXPLAINED };
+        let unknown = if self.found.is_empty() { unknown } else { HALF_UNKNOWN };
+        if unknown <= self.unknown_probability {
+            return;
+        }
+        self.doubted(unknown);
+        self.verdict = match self.verdict {
+            Verdict::NoGap => Verdict::Unexplained,
+            Verdict::Explained | Verdict::CannotTell => Verdict::PartlyExplained,
+            other => other,
+        };
+    }
+
     /// Something unknown is so probable: all that is known is that much less.
     fn doubted(&mut self, unknown: f64) {
         let kept = (1.0 - unknown) / (1.0 - self.unknown_probability).max(1e-9);
@@ -132,7 +155,8 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let rest = Rest::of(&shrunk);
     let verdict = if found.is_empty() {
         let small = rest.over_noise < NOTICED && tolerated(balance, model);
-        if gap && rest.share > 0.5 && !small { Verdict::Unexplained } else { Verdict::NoGap }
+        let left = rest.over_noise > NO_NOISE || stands_out(&best.held_out, counts, floor);
+        if gap && (rest.share > 0.5 && !small || left) { Verdict::Unexplained } else { Verdict::NoGap }
     } else if unknown_probability > UNEXPLAINED {
         Verdict::Unexplained
     } else if rest.share > LEFT && rest.over_noise.powi(2) > 1.0 + NOTABLE {
@@ -149,6 +173,17 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
         judged.doubted(doubt(rest, 0).max(unknown_probability));
     }
     judged
+}
+
+/// Whether a run of blocks has much more left than the others: something that comes and goes.
+fn stands_out(squares: &[f64], counts: &[f64], floor: f64) -> bool {
+    let powers = squares.iter().zip(counts).filter(|(_, count)| **count > 0.0).map(|(square, count)| square / count);
+    let powers: Vec<f64> = powers.collect();
+    let mut sorted = powers.clone();
+    sorted.sort_by(f64::total_cmp);
+    let Some(middle) = sorted.get(sorted.len() / 2) else { return false };
+    let least = APART * middle.max(floor.powi(2));
+    powers.windows(RUN).any(|run| run.iter().all(|power| *power > least))
 }
 
 /// Each set with friction beyond its tolerance once more with a dead zone instead: the two are one column.
