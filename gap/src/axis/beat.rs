@@ -93,7 +93,7 @@ impl Lines {
         let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
         let mut lines = transform.make_output_vec();
         let power = match transform.process(&mut even, &mut lines) {
-            Ok(()) => lines.iter().map(|line| line.norm_sqr()).collect(),
+            Ok(()) => lines.iter().map(realfft::num_complex::Complex::norm_sqr).collect(),
             Err(_) => vec![0.0; lines.len()],
         };
         Self { step_hz: 1.0 / (length as f64 * motion.period_s * motion.thin as f64), power }

@@ -28,7 +28,7 @@ pub(super) fn floor_left(motion: &Motion, residual: &[f64]) -> f64 {
     let middle = squares.len() / 2;
     let (_, median, _) = squares.select_nth_unstable_by(middle, f64::total_cmp);
     let (square, of_acceleration) = (*median / MEDIAN, differences(motion, of_acceleration(motion)));
-    let of_motion = motion.motion_floor.powi(2).min(square / of_acceleration);
+    let of_motion = motion.own_noise.powi(2).min(square / of_acceleration);
     (of_motion + (square - of_motion * of_acceleration) / differences(motion, white)).sqrt().max(motion.floor)
 }
 

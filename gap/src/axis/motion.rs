@@ -80,7 +80,7 @@ pub(super) struct Motion {
     pub(super) position_noise: f64,
     /// Noise that motion and effort bring into the balance, and that of the motion alone.
     pub(super) floor: f64,
-    pub(super) motion_floor: f64,
+    pub(super) own_noise: f64,
     /// Noise of rate and acceleration on the grid.
     pub(super) rate_noise: f64,
     pub(super) acceleration_noise: f64,
@@ -216,8 +216,8 @@ impl Motion {
             rows = steady;
         }
         let block = rows.iter().map(|row| row * BLOCKS / v.len()).collect();
-        let motion_floor = model.inertia * noise_at(band_hz);
-        let floor = motion_floor.hypot(effort_noise * whole.noise_gain());
+        let own_noise = model.inertia * noise_at(band_hz);
+        let floor = own_noise.hypot(effort_noise * whole.noise_gain());
         Self {
             from,
             period_s,
@@ -243,7 +243,7 @@ impl Motion {
             travel: high - low,
             position_noise,
             floor,
-            motion_floor,
+            own_noise,
             rate_noise,
             acceleration_noise: noise_at(band_hz),
             at_rest,
@@ -253,7 +253,7 @@ impl Motion {
 
     /// The same with friction that comes up to its level at such a rate.
     pub(super) fn with_full_friction_at(mut self, rate: f64) -> Self {
-        if !self.stands && rate != self.full_at {
+        if !self.stands {
             self.full_at = rate;
             self.s = self.v.iter().map(|v| (v / rate).clamp(-1.0, 1.0)).collect();
         }
