@@ -18,12 +18,14 @@ pub(super) const SEGMENT: usize = 4096;
 /// Bands in which power is taken, the lowest line of them, and steps of the fit.
 const BANDS: usize = 36;
 const FIRST_LINE: f64 = 1.5;
+const STEPS: usize = 120;
 /// Rows of a segment for what is slower, its bands, and what a degree of freedom counts there: what has been fitted took
 /// some of them.
 const LONG_SEGMENT: usize = 8 * SEGMENT;
+/// Least length of it over that of the others: one that is hardly longer shows an effect that is slow, and not much else.
+const LEAST_LONG: usize = 4;
 const SLOW_BANDS: usize = 6;
 const SLOW_COUNTS: f64 = 0.5;
-const STEPS: usize = 120;
 /// What noise of low frequency must bring: few lines show it, and it hides what is slow [nats].
 const SHOWN_NATS: f64 = 1.5;
 /// Corners that are tried of the slope 2, and of the slope 1: that one must bring more, as it goes on rising where
@@ -125,7 +127,7 @@ impl Bands {
         let length = SEGMENT.min(values.len());
         let shortest_hz = FIRST_LINE / (Plans::new(length).length() as f64 * period_s);
         let long = LONG_SEGMENT.min(values.len());
-        if long >= 2 * length {
+        if long >= LEAST_LONG * length {
             bands.add(values, valid, of, period_s, (long, shortest_hz, SLOW_BANDS, SLOW_COUNTS));
             bands.slow = bands.hz.len();
         }
