@@ -27,6 +27,7 @@ pub mod record;
 pub mod report;
 mod settle;
 pub mod simulate;
+mod window;
 
 pub use diagnose::{Diagnosis, diagnose};
 pub use pool::{Pool, pool, pool_step_by_step};

@@ -6,17 +6,13 @@ use super::floor::floor_left;
 use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
+use super::plain::{needed, nominal, rounded};
 use super::regress::Grams;
 use super::resonance::modes;
 use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
 use super::tried::shapes;
 use super::waves::waves;
 
-/// Rate up to which friction may come up to its level, over the fastest, and what a rounder corner must leave at most of the
-/// root mean square.
-const WIDEST_ROUNDING: f64 = 0.03;
-const ROUNDED: f64 = 0.9;
-const ROUNDER: f64 = 1.25;
 /// Rows at which friction is looked at.
 const SLIP_ROWS: usize = 400;
 /// Slip is steady where its direction is smoothed by no more than this.
@@ -47,61 +43,10 @@ pub(super) struct Balance {
     pub(super) dead_zone_is_friction: bool,
 }
 
-/// Nominal parameters.
-pub(super) fn nominal(model: &AxisModel) -> [f64; 3] {
-    [model.inertia, model.viscous, model.coulomb]
-}
-
-/// Effort that parameters and a constant need, at every row.
-pub(super) fn needed(motion: &Motion, parameters: [f64; 4]) -> Vec<f64> {
-    let [inertia, viscous, coulomb, constant] = parameters;
-    (0..motion.q.len())
-        .map(|i| inertia * motion.a[i] + viscous * motion.v[i] + coulomb * motion.s[i] + constant)
-        .collect()
-}
-
-/// The parameters of a motion by plain least squares, with a constant: a first look, and what effects of the effort
-/// hang on.
-pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
-    let mut columns: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
-    columns.push(vec![1.0; motion.rows.len()]);
-    let effort = motion.raw(&motion.effort);
-    let grams = Grams::new(&columns, &effort, &motion.block);
-    let fit = grams.fit(&[0, 1, 2, 3]);
-    let rest = (grams.square_of_fit(&[0, 1, 2, 3]) / effort.len().max(1) as f64).sqrt();
-    ([fit[0], fit[1], fit[2], fit[3]], rest)
-}
-
-/// The motion with the friction that comes up to its level at the rate that explains most: an axis that creeps to rest has
-/// less than all of it, and how much is no effect. Wider than the least only where that leaves a good deal less.
-fn rounded(motion: Motion) -> Motion {
-    let (_, sharp) = plain(&motion);
-    let widest = WIDEST_ROUNDING * motion.fastest;
-    let rates = std::iter::successors(Some(ROUNDER * motion.quiet), |rate| Some(ROUNDER * rate))
-        .take_while(|rate| *rate < widest);
-    let of = |rate: f64| {
-        let motion = motion.clone().with_full_friction_at(rate);
-        (plain(&motion).1, motion)
-    };
-    match rates.map(of).min_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((rest, round)) if rest < ROUNDED * sharp => round,
-        _ => motion,
-    }
-}
-
-/// Root mean square of what the nominal model leaves.
-pub(super) fn nominal_rest(motion: &Motion, model: &AxisModel) -> f64 {
-    let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
-    let (effort, parameters) = (motion.raw(&motion.effort), nominal(model));
-    let rest = |row: usize| effort[row] - (0..3).map(|place| parameters[place] * base[place][row]).sum::<f64>();
-    rms(&(0..effort.len()).map(rest).collect::<Vec<_>>())
-}
-
 impl Balance {
     /// Makes the balance and every column.
     pub(super) fn new(motion: Motion, model: &AxisModel) -> Self {
-        let mut motion = rounded(motion);
-        let (found, rest) = plain(&motion);
+        let (mut motion, found, rest) = rounded(motion);
         motion.needed = needed(&motion, if motion.stands { [0.0, 0.0, model.coulomb, 0.0] } else { found });
         motion.size = rms(&motion.needed).max(1e-30);
         let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();

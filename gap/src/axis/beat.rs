@@ -5,11 +5,10 @@
 //! over = P(f) / median of P about f        P: power of the residual over all of the log, by Hann's window
 //! ```
 
-use std::f64::consts::TAU;
-
 use realfft::RealFftPlanner;
 
 use super::motion::Motion;
+use crate::window::hann;
 
 /// Lines to either side whose median is what is there without a beat, and lines that a beat takes to either side.
 const ABOUT: usize = 40;
@@ -83,20 +82,17 @@ struct Lines {
 
 impl Lines {
     fn new(motion: &Motion, values: &[f64]) -> Self {
-        let length = motion.q.len() / motion.thin + 1;
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        let mut even = vec![0.0; length];
-        for (value, row) in values.iter().zip(&motion.rows) {
-            let place = row / motion.thin;
-            even[place] = (value - mean) * (0.5 - 0.5 * (TAU * (place as f64 + 0.5) / length as f64).cos());
-        }
+        let mut even = motion.in_time(values.iter().map(|value| value - mean));
+        let length = even.len();
+        even.iter_mut().zip(hann(length)).for_each(|(value, window)| *value *= window);
         let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
         let mut lines = transform.make_output_vec();
         let power = match transform.process(&mut even, &mut lines) {
             Ok(()) => lines.iter().map(realfft::num_complex::Complex::norm_sqr).collect(),
             Err(_) => vec![0.0; lines.len()],
         };
-        Self { step_hz: 1.0 / (length as f64 * motion.period_s * motion.thin as f64), power }
+        Self { step_hz: 1.0 / (length as f64 * motion.grid_s()), power }
     }
 
     /// Power of a line with those that its window spreads it over.

@@ -4,10 +4,11 @@ use std::f64::consts::{PI, TAU};
 
 use gimbal_model_file::AxisModel;
 
-use super::balance::{nominal, plain};
 use super::follows::{follows, lateness_error};
 use super::library::rms;
-use super::motion::{Motion, MotionFrom, NARROW, step};
+use super::motion::{Motion, MotionFrom, NARROW};
+use super::noise::step;
+use super::plain::{nominal, plain};
 use super::smooth::Kernel;
 use super::table::AxisLog;
 use super::units::{Unit, looks_like, other_unit};

@@ -3,14 +3,14 @@
 use gimbal_model_file::AxisModel;
 
 use super::balance::Balance;
-use super::columns::{self, ColumnFault};
-use super::follows::advance;
-use super::judge::{Found, Parameter, Ranked, Shrunk, by_block, judge, shrunk};
+use super::columns::ColumnFault;
+use super::judge::{Found, Parameter, Ranked, Shrunk, judge};
 use super::library::rms;
-use super::motion::{Motion, MotionFrom, NARROW, WIDE};
 use super::place::{AxisRegime, FrictionCurve, bands, friction_curve, regimes, spans, spectrum};
+use super::ready::ready;
 use super::search::Set;
 use super::table::AxisLog;
+use super::unseen;
 use crate::judge::Verdict;
 use crate::place::{Band, Span, Spectrum};
 
@@ -70,42 +70,8 @@ pub struct AxisDiagnosis {
     pub(super) spectra: [Spectrum; 2],
 }
 
-/// Share of the effort from which on a gap is large.
-const LARGE_GAP: f64 = 0.3;
-
 /// A fit that leaves more than this of a log that it did not see is not what the axis has.
 const NOT_CARRIED: f64 = 0.6;
-
-/// A log made ready: columns checked, the motion chosen.
-fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Motion) {
-    columns::unwrap(&mut log);
-    let checked = columns::check(&log, model);
-    if let Some(unit) = checked.unit {
-        unit.undo(&mut log);
-    }
-    let from = checked.from.unwrap_or(MotionFrom::Position);
-    let late = checked.faults.iter().find(|fault| fault.effect == "velocity_delay").map(|fault| fault.parameters[0].1);
-    let scaled = checked.faults.iter().any(|fault| fault.effect.ends_with("_scale"));
-    if let (Some(late_s), MotionFrom::Velocity, Some(velocity)) = (late, from, &mut log.velocity) {
-        advance(velocity, late_s / log.period_s);
-        log.notes.push(format!("the rate is taken {:.1} ms earlier for the balance", 1e3 * late_s));
-    }
-    let motion_of = |noise_share: f64| {
-        let mut motion = Motion::new(&log, model, from, checked.effort_sign, noise_share);
-        // an integrated rate loses the angle; the position column keeps it
-        if let (MotionFrom::Velocity, Some(position), false) = (from, &log.position, scaled) {
-            motion.q = motion.rest.apply(position);
-            motion.middle = motion.q.iter().sum::<f64>() / motion.q.len().max(1) as f64;
-        }
-        motion
-    };
-    let mut motion = motion_of(NARROW);
-    // a large gap stands out of more noise: a wider band shows more of it
-    if super::balance::nominal_rest(&motion, model) > LARGE_GAP * rms(&motion.pick(&motion.effort)) {
-        motion = motion_of(WIDE);
-    }
-    (log, checked, motion)
-}
 
 /// Diagnoses a log against a model, and scores what it finds on logs that it does not fit.
 #[must_use]
@@ -118,7 +84,7 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     let unseen: Vec<Vec<Shrunk>> = unseen
         .into_iter()
         .map(|(name, log)| {
-            let scores = score(&balance, &best, model, name.clone(), log, &mut notes);
+            let scores = unseen::score(&balance, &best, model, name.clone(), log, &mut notes);
             // a load that the fitted log did not have is not the fit's to explain: the least that is left counts
             let left = scores.iter().map(|s| 1.0 - 0.01 * s.reduction_percent).fold(f64::MAX, f64::min);
             if !scores.is_empty() && !best.members.is_empty() {
@@ -226,95 +192,6 @@ fn of_column(fault: &ColumnFault) -> Found {
         removes: 0.0,
         shows_in: "columns",
     }
-}
-
-/// What the fit to one log leaves of another.
-fn score(
-    balance: &Balance,
-    best: &Set,
-    model: &AxisModel,
-    name: String,
-    log: AxisLog,
-    notes: &mut Vec<String>,
-) -> Vec<Shrunk> {
-    let (_, checked, motion) = ready(log, model);
-    let mut motion = motion.with_full_friction_at(balance.motion.full_at);
-    if Some(balance.motion.from) != checked.from {
-        notes.push(format!("{name}: its motion is taken from the other column"));
-    }
-    if motion.stands != balance.motion.stands {
-        notes.push(format!("{name}: one of the logs is at rest and the other moves; not compared"));
-        return Vec::new();
-    }
-    motion.needed = super::balance::needed(&motion, super::balance::plain(&balance.motion).0);
-    (motion.middle, motion.size) = (balance.motion.middle, balance.motion.size);
-    let base: Vec<Vec<f64>> = super::library::NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
-    let parameters = super::balance::nominal(model);
-    let effort = motion.raw(&motion.effort);
-    let before: Vec<f64> =
-        (0..effort.len()).map(|row| effort[row] - (0..3).map(|p| parameters[p] * base[p][row]).sum::<f64>()).collect();
-    let (_, amplitudes) = balance.fit(&best.members);
-    let mut after = before.clone();
-    let mut place = 0;
-    let mut take = |columns: &[Vec<f64>], after: &mut Vec<f64>| {
-        for column in columns {
-            after.iter_mut().zip(column).for_each(|(r, value)| *r -= amplitudes[place] * value);
-            place += 1;
-        }
-    };
-    take(&base, &mut after);
-    for &member in &best.members {
-        let candidate = &balance.problem.candidates[member];
-        let channel = match candidate.shape {
-            super::library::Shape::Load { channel }
-            | super::library::Shape::LoadFriction { channel }
-            | super::library::Shape::LoadGain { channel }
-            | super::library::Shape::LoadRipple { channel, .. } => Some(&balance.motion.auxiliary[channel].0),
-            _ => None,
-        };
-        let there = channel.is_none_or(|name| motion.auxiliary.iter().any(|(other, _)| other == name));
-        let columns = if there {
-            candidate.shape.on_grid(&motion)
-        } else {
-            vec![vec![0.0; after.len()]; candidate.columns.len()]
-        };
-        take(&columns, &mut after);
-    }
-    let mut counts = vec![0.0; super::motion::BLOCKS];
-    motion.block.iter().for_each(|&block| counts[block] += 1.0);
-    let unit = &model.effort_unit;
-    let whole = shrunk(
-        format!("effort of {name}, not fitted"),
-        unit,
-        &by_block(&before, &motion),
-        &by_block(&after, &motion),
-        &counts,
-        motion.floor,
-    );
-    let mut all = vec![whole];
-    // a load that the fitted log did not have is not the fit's to explain
-    for (channel, values) in &motion.auxiliary {
-        if balance.motion.auxiliary.iter().any(|(other, _)| other == channel) {
-            continue;
-        }
-        let off = |residual: &[f64]| -> Vec<f64> {
-            let rows = motion.rows.iter().zip(residual);
-            rows.map(|(&row, r)| if values[row].abs() < 1e-9 { *r } else { 0.0 }).collect()
-        };
-        let mut counts = vec![0.0; super::motion::BLOCKS];
-        for (&row, &block) in motion.rows.iter().zip(&motion.block) {
-            counts[block] += if values[row].abs() < 1e-9 { 1.0 } else { 0.0 };
-        }
-        all.push(shrunk(
-            format!("effort of {name}, not fitted, {channel} off"),
-            unit,
-            &by_block(&off(&before), &motion),
-            &by_block(&off(&after), &motion),
-            &counts,
-            motion.floor,
-        ));
-    }
-    all
 }
 
 /// What these signals cannot tell apart, whatever their size, and what would.

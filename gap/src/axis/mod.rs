@@ -14,7 +14,10 @@ mod law;
 mod library;
 mod memory;
 mod motion;
+mod noise;
 mod place;
+mod plain;
+mod ready;
 mod regress;
 mod report;
 mod resonance;
@@ -23,6 +26,7 @@ mod smooth;
 mod table;
 mod tried;
 mod units;
+mod unseen;
 mod waves;
 
 pub use columns::ColumnFault;

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use gimbal_model_file::AxisModel;
 use gimbal_model_file::axis::Motion as Kind;
 
+use super::noise::{noise, step};
 use super::smooth::{HALF_POWER, Kernel};
 use super::table::AxisLog;
 
@@ -24,10 +25,6 @@ const ENOUGH: f64 = 0.15;
 pub(super) const LEAST_WAVES: f64 = 0.7;
 /// Rows of the balance at most.
 const MOST_ROWS: usize = 12_000;
-/// Steps between neighbouring values that show whether they lie on a grid, how far off it one is, and how many may be.
-const MOST_STEPS: f64 = 5.5;
-const OFF_GRID: f64 = 0.15;
-const MAY_BE_OFF: f64 = 0.3;
 /// Below this share of moving rows the axis is taken to stand.
 const STANDS: f64 = 0.1;
 
@@ -87,34 +84,6 @@ pub(super) struct Motion {
     /// Share of the rows at rest; whether the axis stands all the time.
     pub(super) at_rest: f64,
     pub(super) stands: bool,
-}
-
-/// Noise of a sampled signal that is smooth between rows: third differences, the largest tenth left out.
-pub(super) fn noise(values: &[f64]) -> f64 {
-    let mut squares: Vec<f64> = values.windows(4).map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).powi(2)).collect();
-    if squares.is_empty() {
-        return 0.0;
-    }
-    squares.sort_by(f64::total_cmp);
-    let kept = squares.len() * 9 / 10 + 1;
-    // a Gaussian without its largest tenth keeps 44 % of its power per sample
-    let trimmed = squares.iter().take(kept).sum::<f64>() / kept.min(squares.len()) as f64;
-    (trimmed / 20.0 / 0.62).sqrt().max(step(values) / 12_f64.sqrt())
-}
-
-/// Step of the grid that values lie on: the quantisation, where there is one. Values of a fine grid, few of which were met,
-/// lie at any distance from one another, and that is no step.
-pub(super) fn step(values: &[f64]) -> f64 {
-    let mut sorted: Vec<f64> = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
-    let mut steps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    // the tenth percentile is not misled by roundings in a file
-    let step = steps.get(steps.len() / 10).copied().unwrap_or(0.0);
-    let near = &steps[..steps.partition_point(|gap| *gap < MOST_STEPS * step)];
-    let off = near.iter().filter(|gap| (**gap / step - (**gap / step).round()).abs() > OFF_GRID).count();
-    if off as f64 > MAY_BE_OFF * near.len() as f64 { 0.0 } else { step }
 }
 
 impl Motion {
@@ -293,6 +262,20 @@ impl Motion {
         self.rows.iter().map(|&row| values[row]).collect()
     }
 
+    /// What is on the grid of the balance in time, zero where a row does not count.
+    pub(super) fn in_time(&self, on_grid: impl IntoIterator<Item = f64>) -> Vec<f64> {
+        let mut even = vec![0.0; self.q.len() / self.thin + 1];
+        for (value, row) in on_grid.into_iter().zip(&self.rows) {
+            even[row / self.thin] = value;
+        }
+        even
+    }
+
+    /// Time from one row of the grid to the next.
+    pub(super) fn grid_s(&self) -> f64 {
+        self.period_s * self.thin as f64
+    }
+
     /// Time since the first row.
     pub(super) fn time_s(&self, row: usize) -> f64 {
         row as f64 * self.period_s
@@ -325,20 +308,5 @@ impl Motion {
         } else {
             (3..400).map(|half| f64::from(half) * 0.5 * TAU / self.travel).collect()
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::step;
-
-    #[test]
-    fn a_coarse_grid_has_a_step_and_a_fine_one_has_none() {
-        let sweep = |grid: f64| -> Vec<f64> {
-            let at = |k: u32| 1.3 * (1.7e-3 * f64::from(k)).sin() + 0.2 * (3.1e-4 * f64::from(k)).cos();
-            (0..20_000).map(|k| (at(k) / grid).round() * grid).collect()
-        };
-        assert!((step(&sweep(1e-3)) - 1e-3).abs() < 1e-9, "{}", step(&sweep(1e-3)));
-        assert!(step(&sweep(1e-8)) < 1e-12);
     }
 }

@@ -2,9 +2,10 @@
 
 use gimbal_model_file::AxisModel;
 
-use super::balance::{Balance, nominal};
+use super::balance::Balance;
 use super::library::NOMINAL;
 use super::motion::Motion;
+use super::plain::nominal;
 use super::search::Set;
 use crate::place::{Band, Span, Spectrum};
 
@@ -83,12 +84,9 @@ pub(super) fn regimes(motion: &Motion, before: &[f64], after: &[f64]) -> Vec<Axi
 
 /// Spectrum of a residual on the grid; rows at rest are zero.
 pub(super) fn spectrum(motion: &Motion, values: &[f64]) -> Spectrum {
-    let mut even = vec![0.0; motion.q.len() / motion.thin + 1];
-    for (value, row) in values.iter().zip(&motion.rows) {
-        even[row / motion.thin] = *value;
-    }
+    let even = motion.in_time(values.iter().copied());
     let valid = vec![true; even.len()];
-    Spectrum::new(&even, &valid, motion.floor.max(1e-300), motion.period_s * motion.thin as f64)
+    Spectrum::new(&even, &valid, motion.floor.max(1e-300), motion.grid_s())
 }
 
 /// Shares of the bands, no higher than the balance goes.
@@ -100,12 +98,9 @@ pub(super) fn bands(motion: &Motion, values: &[f64]) -> Vec<Band> {
 
 /// Windows in which the effects' contribution exceeds three standard deviations of what is left.
 pub(super) fn spans(motion: &Motion, contribution: &[f64], left: f64) -> Vec<Span> {
-    let mut even = vec![0.0; motion.q.len() / motion.thin + 1];
-    let window = 0.5 / (motion.period_s * motion.thin as f64);
-    for (value, row) in contribution.iter().zip(&motion.rows) {
-        even[row / motion.thin] = value / (left.max(1e-300) * window.max(1.0).sqrt());
-    }
-    crate::place::spans(&even, 1, motion.period_s * motion.thin as f64)
+    let window = 0.5 / motion.grid_s();
+    let unit = left.max(1e-300) * window.max(1.0).sqrt();
+    crate::place::spans(&motion.in_time(contribution.iter().map(|value| value / unit)), 1, motion.grid_s())
 }
 
 /// Friction over rate: what the data show, what the nominal model and the effects say, and a band of confidence.

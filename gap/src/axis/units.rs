@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use gimbal_model_file::AxisModel;
 
-use super::balance::{nominal, plain};
 use super::motion::{Motion, MotionFrom, NARROW};
+use super::plain::{nominal, plain};
 use super::table::AxisLog;
 
 /// A factor is a known one within this.

@@ -12,6 +12,7 @@
 
 use super::plans::Plans;
 use super::shapes::Shapes;
+use crate::window::hann;
 
 /// Rows of a segment.
 pub(super) const SEGMENT: usize = 4096;
@@ -120,34 +121,56 @@ pub(super) struct Bands {
     slow: usize,
 }
 
+/// Segments of which powers are taken.
+struct Segments<'a> {
+    /// Rows of each, and their transform.
+    length: usize,
+    plans: &'a Plans,
+    /// Highest frequency [Hz].
+    to_hz: f64,
+    /// Bands up to there.
+    bands: usize,
+    /// What a degree of freedom counts.
+    counts: f64,
+}
+
 impl Bands {
     /// Of segments, and of longer ones for what is slower than these show.
     pub(super) fn new(values: &[f64], valid: &[bool], of: Of, period_s: f64) -> Self {
         let mut bands = Self { hz: Vec::new(), power: Vec::new(), weight: Vec::new(), slow: 0 };
-        let length = SEGMENT.min(values.len());
-        let shortest_hz = FIRST_LINE / (Plans::new(length).length() as f64 * period_s);
-        let long = LONG_SEGMENT.min(values.len());
+        let (length, long) = (SEGMENT.min(values.len()), LONG_SEGMENT.min(values.len()));
+        let plans = Plans::new(length);
         if long >= LEAST_LONG * length {
-            bands.add(values, valid, of, period_s, (long, shortest_hz, SLOW_BANDS, SLOW_COUNTS));
+            let shown_hz = FIRST_LINE / (plans.length() as f64 * period_s);
+            bands.add(
+                values,
+                valid,
+                of,
+                period_s,
+                &Segments {
+                    length: long,
+                    plans: &Plans::new(long),
+                    to_hz: shown_hz,
+                    bands: SLOW_BANDS,
+                    counts: SLOW_COUNTS,
+                },
+            );
             bands.slow = bands.hz.len();
         }
-        bands.add(values, valid, of, period_s, (length, 0.5 / period_s, BANDS, 1.0));
+        bands.add(
+            values,
+            valid,
+            of,
+            period_s,
+            &Segments { length, plans: &plans, to_hz: 0.5 / period_s, bands: BANDS, counts: 1.0 },
+        );
         bands
     }
 
-    /// Bands of segments of one length, up to a frequency; what a degree of freedom of theirs counts.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "lines")]
-    fn add(
-        &mut self,
-        values: &[f64],
-        valid: &[bool],
-        of: Of,
-        period_s: f64,
-        (length, last, bands, counts): (usize, f64, usize, f64),
-    ) {
-        let plans = Plans::new(length);
-        let window: Vec<f64> =
-            (0..length).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / length as f64).cos()).collect();
+    fn add(&mut self, values: &[f64], valid: &[bool], of: Of, period_s: f64, segments: &Segments) {
+        let &Segments { length, plans, to_hz, bands, counts: weight } = segments;
+        let window = hann(length);
         let least = if of == Of::Most { 0.5 } else { 0.1 };
         let mut segments: Vec<Vec<f64>> = Vec::new();
         for start in (0..=values.len() - length).step_by((length / 2).max(1)) {
@@ -164,7 +187,7 @@ impl Bands {
         }
         let step_hz = 1.0 / (plans.length() as f64 * period_s);
         let first = FIRST_LINE * step_hz;
-        let edge = |band: usize| first * (last / first).powf(band as f64 / bands as f64);
+        let edge = |band: usize| first * (to_hz / first).powf(band as f64 / bands as f64);
         for band in 0..bands {
             let (from, to) = ((edge(band) / step_hz).ceil() as usize, (edge(band + 1) / step_hz).ceil() as usize);
             let to = to.min(plans.length() / 2);
@@ -182,7 +205,7 @@ impl Bands {
                 Of::Most => 0.5 * (means[(means.len() - 1) / 2] + means[means.len() / 2]) / median,
                 Of::All => means.iter().sum::<f64>() / means.len() as f64,
             });
-            self.weight.push(counts * n * segments.len() as f64);
+            self.weight.push(weight * n * segments.len() as f64);
         }
     }
 

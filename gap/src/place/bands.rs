@@ -2,6 +2,8 @@
 
 use realfft::RealFftPlanner;
 
+use crate::window::hann;
+
 /// Rows of a segment.
 const SEGMENT: usize = 2048;
 /// Edges of the bands that are told [Hz].
@@ -34,8 +36,7 @@ impl Spectrum {
         let length = SEGMENT.min(values.len());
         let mut planner = RealFftPlanner::<f64>::new();
         let transform = planner.plan_fft_forward(length);
-        let window: Vec<f64> =
-            (0..length).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / length as f64).cos()).collect();
+        let window = hann(length);
         let gain: f64 = window.iter().map(|value| value * value).sum::<f64>() * sigma * sigma;
         let mut power = vec![0.0; length / 2 + 1];
         let mut count = 0.0;

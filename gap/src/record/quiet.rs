@@ -12,6 +12,8 @@
 
 use realfft::RealFftPlanner;
 
+use crate::window::hann;
+
 use super::Record;
 use super::rough::rough;
 use crate::simulate::{Inputs, Physics, predict};
@@ -115,8 +117,7 @@ fn filtered(rate_radps: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
 fn pass(values: &[f64], noise: f64) -> Vec<f64> {
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(SEGMENT);
     let mut lines = transform.make_output_vec();
-    let window: Vec<f64> =
-        (0..SEGMENT).map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * (k as f64 + 0.5) / SEGMENT as f64).cos()).collect();
+    let window = hann(SEGMENT);
     let power: f64 = window.iter().map(|value| value * value).sum();
     let mut spectrum = vec![0.0; lines.len()];
     let mut segments = 0.0;

@@ -5,6 +5,7 @@
 //! float is on a stop. A test holds it against the plant.
 
 mod bearing;
+mod begin;
 mod cable;
 mod chain;
 mod corner;
@@ -19,8 +20,9 @@ mod predict;
 mod running;
 mod sprung;
 
+pub use begin::Begin;
 pub(crate) use chain::{ANGLES, TORQUES};
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
 pub use physics::{BuildUp, Fall, Friction, Hysteresis, Loop, Measurement, Physics, Ripple, Stribeck};
-pub use predict::{Begin, Prediction, Push, Variant, predict, predict_each};
+pub use predict::{Prediction, Push, Variant, predict, predict_each};

@@ -1,27 +1,16 @@
 //! Predictions of a log: one, or many that differ a little.
 
-use gimbal_servo::Config;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::bearing::Viscous;
-use super::chain::{Chain, FULL, INTEGRATOR, PLAIN, SECTION, THETA, TORQUE};
+use super::chain::{Chain, FULL, PLAIN};
 use super::discrete::Steps;
 use super::inputs::later;
 use super::machine::Machine;
-use super::{Inputs, Physics};
+use super::{Begin, Inputs, Physics};
 
 /// Predictions that go side by side.
 const SIDE_BY_SIDE: usize = 4;
-
-/// Where a prediction begins.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Begin {
-    /// phi', theta, theta', four sections, integrator, motor torque, phi.
-    pub state: [f64; PLAIN],
-    /// Share of the cable's loop.
-    pub hysteresis: f64,
-}
 
 /// What the sensors would read, and what they do not see.
 #[derive(Debug, Clone, Default)]
@@ -69,35 +58,6 @@ impl Prediction {
         for torque in &mut self.motor_torque_nm {
             *torque = *torque * sensors.torque_factor + sensors.torque_bias_nm;
         }
-    }
-}
-
-impl Begin {
-    /// At rest under the first row, with the pick-off angle and motor torque that the log begins with, and a servo that has
-    /// settled at them:
-    ///
-    /// ```text
-    /// section y = (1 - r) in        I = T_m - T5 K theta
-    /// ```
-    #[must_use]
-    pub fn at(physics: &Physics, inputs: &Inputs, theta_rad: f64, torque_nm: Option<f64>) -> Self {
-        let Config { servo, bearing, unbalance, .. } = &physics.config;
-        let rate = inputs.rate_radps[0];
-        let level = inputs.load_nm[0] + Viscous::new(bearing).torque_nm(rate.abs());
-        let disturbance = level * (rate / bearing.slip_rate_radps).clamp(-1.0, 1.0)
-            + unbalance.torque_nm(inputs.accel_mps2[0][0], inputs.accel_mps2[1][0]);
-        let torque_nm = torque_nm.unwrap_or(disturbance);
-        let signal = servo.gain_nm_per_rad_s * theta_rad;
-        let mut state = [0.0; PLAIN];
-        state[THETA] = theta_rad;
-        for (section, (lag_s, lead_s)) in
-            servo.lag_time_constants_s.iter().zip(&servo.lead_time_constants_s).enumerate()
-        {
-            state[SECTION + section] = (1.0 - lead_s / lag_s) * signal;
-        }
-        state[INTEGRATOR] = torque_nm - servo.lead_time_constants_s[4] * signal;
-        state[TORQUE] = torque_nm;
-        Self { state, hysteresis: 0.0 }
     }
 }
 
@@ -230,9 +190,9 @@ impl<const N: usize, const L: usize> WithSimd for Run<'_, N, L> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Begin, Prediction, Push, Variant, predict, predict_each};
+    use super::{Prediction, Push, Variant, predict, predict_each};
     use crate::library::{apply, platform};
-    use crate::simulate::{Inputs, Physics};
+    use crate::simulate::{Begin, Inputs, Physics};
 
     fn swayed(rows: usize) -> Inputs {
         let wave = |size: f64, hz: f64| -> Vec<f64> {

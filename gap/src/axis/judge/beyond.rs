@@ -2,9 +2,10 @@
 
 use gimbal_model_file::AxisModel;
 
-use crate::axis::balance::{Balance, nominal};
+use crate::axis::balance::Balance;
 use crate::axis::library::{NOMINAL, Shape, rms};
 use crate::axis::motion::Motion;
+use crate::axis::plain::nominal;
 
 /// A nominal parameter is an effect from this many tolerances on.
 pub(in crate::axis) const BEYOND: f64 = 1.15;

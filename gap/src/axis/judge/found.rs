@@ -4,8 +4,9 @@ use gimbal_model_file::AxisModel;
 
 use super::beyond::{beyond, label};
 use super::{Found, Parameter, Ranked, deviation, parameters};
-use crate::axis::balance::{Balance, nominal};
+use crate::axis::balance::Balance;
 use crate::axis::library::{NOMINAL, Shape};
+use crate::axis::plain::nominal;
 use crate::axis::regress::Draws;
 use crate::axis::search::Set;
 

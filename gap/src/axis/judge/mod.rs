@@ -29,8 +29,9 @@ const CARRIED: f64 = 0.2;
 const LAW_LEFT: f64 = 0.05;
 /// From this probability of something unknown on nothing is explained.
 const UNEXPLAINED: f64 = 0.6;
-/// Share of what is left from which on a beat is most of it, and how probable something unknown is beside effects.
+/// Share of what is left from which on a beat is most of it, how probable something unknown is then, and beside effects.
 const MOST_OF_REST: f64 = 0.2;
+const BEATS: f64 = 0.8;
 const HALF_UNKNOWN: f64 = 0.5;
 /// Share of the gap that is a trifle.
 const TRIFLE: f64 = 0.01;
@@ -43,8 +44,6 @@ const NOTABLE: f64 = 1.5;
 const NO_NOISE: f64 = 3.2;
 const RUN: usize = 3;
 const APART: f64 = 4.0;
-/// What is left is no matter of the parameters' tolerances from this many times the noise on: they have been fitted.
-const NOTICED: f64 = 5.0;
 
 /// An effect that is named.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,21 +89,22 @@ impl Judged {
     pub(super) fn doubt_law(&mut self, left: f64) {
         // what the balance has named may be all there is in it
         let unknown = if self.verdict == Verdict::NoGap { doubt(Rest::share(1.0), 0) } else { UNEXPLAINED };
-        if left < LAW_LEFT || unknown <= self.unknown_probability {
-            return;
+        if left >= LAW_LEFT {
+            self.unnamed(unknown);
         }
-        self.doubted(unknown);
-        self.verdict = match self.verdict {
-            Verdict::NoGap => Verdict::Unexplained,
-            Verdict::Explained | Verdict::CannotTell => Verdict::PartlyExplained,
-            other => other,
-        };
     }
 
     /// What is left has a line in time: of a gap that it is most of, and beside effects, something is there that is not named.
     pub(super) fn doubt_beat(&mut self, share: f64) {
-        let unknown = if share > MOST_OF_REST { UNEXPLAINED + 0.2 } else { UNEXPLAINED };
-        let unknown = if self.found.is_empty() { unknown } else { HALF_UNKNOWN };
+        self.unnamed(match (self.found.is_empty(), share > MOST_OF_REST) {
+            (false, _) => HALF_UNKNOWN,
+            (true, false) => UNEXPLAINED,
+            (true, true) => BEATS,
+        });
+    }
+
+    /// Something that is not named is so probable, where it is no more so already: nothing is explained without it.
+    fn unnamed(&mut self, unknown: f64) {
         if unknown <= self.unknown_probability {
             return;
         }
@@ -154,9 +154,12 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
     let rest = Rest::of(&shrunk);
     let verdict = if found.is_empty() {
-        let small = rest.over_noise < NOTICED && tolerated(balance, model);
         let left = rest.over_noise > NO_NOISE || stands_out(&best.held_out, counts, floor);
-        if gap && (rest.share > 0.5 && !small || left) { Verdict::Unexplained } else { Verdict::NoGap }
+        if gap && (left || rest.share > 0.5 && !tolerated(balance, model)) {
+            Verdict::Unexplained
+        } else {
+            Verdict::NoGap
+        }
     } else if unknown_probability > UNEXPLAINED {
         Verdict::Unexplained
     } else if rest.share > LEFT && rest.over_noise.powi(2) > 1.0 + NOTABLE {

@@ -2,9 +2,9 @@
 
 use gimbal_model_file::AxisModel;
 
-use crate::axis::balance::nominal;
 use crate::axis::library::{NOMINAL, Shape};
 use crate::axis::motion::Motion;
+use crate::axis::plain::nominal;
 
 /// A parameter of an effect.
 #[derive(Debug, Clone, PartialEq)]

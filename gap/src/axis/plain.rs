@@ -1,0 +1,78 @@
+//! A motion and its effort by the nominal parameters alone: a first look, before any effect.
+
+use gimbal_model_file::AxisModel;
+
+use super::library::{NOMINAL, Shape, rms};
+use super::motion::Motion;
+use super::regress::Grams;
+
+/// Rate up to which friction may come up to its level, over the fastest; steps of it; and what a rounder corner must leave at
+/// most of the root mean square.
+const WIDEST_ROUNDING: f64 = 0.03;
+const ROUNDER: f64 = 1.25;
+const ROUNDED: f64 = 0.9;
+
+/// Nominal parameters.
+pub(super) fn nominal(model: &AxisModel) -> [f64; 3] {
+    [model.inertia, model.viscous, model.coulomb]
+}
+
+/// Effort that parameters and a constant need, at every row.
+pub(super) fn needed(motion: &Motion, parameters: [f64; 4]) -> Vec<f64> {
+    let [inertia, viscous, coulomb, constant] = parameters;
+    (0..motion.q.len())
+        .map(|i| inertia * motion.a[i] + viscous * motion.v[i] + coulomb * motion.s[i] + constant)
+        .collect()
+}
+
+/// The parameters of a motion by plain least squares, with a constant, and the root mean square of what they leave: a
+/// first look, and what effects of the effort hang on.
+pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
+    fitted(motion, &columns(motion), &motion.raw(&motion.effort))
+}
+
+/// Columns of the nominal parameters and a constant.
+fn columns(motion: &Motion) -> Vec<Vec<f64>> {
+    let mut columns: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
+    columns.push(vec![1.0; motion.rows.len()]);
+    columns
+}
+
+fn fitted(motion: &Motion, columns: &[Vec<f64>], effort: &[f64]) -> ([f64; 4], f64) {
+    let grams = Grams::new(columns, effort, &motion.block);
+    let fit = grams.fit(&[0, 1, 2, 3]);
+    let rest = (grams.square_of_fit(&[0, 1, 2, 3]) / effort.len().max(1) as f64).sqrt();
+    ([fit[0], fit[1], fit[2], fit[3]], rest)
+}
+
+/// The motion with the friction that comes up to its level at the rate that explains most, and how plain least squares
+/// explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than the least only
+/// where that leaves a good deal less.
+pub(super) fn rounded(mut motion: Motion) -> (Motion, [f64; 4], f64) {
+    let (mut columns, effort) = (columns(&motion), motion.raw(&motion.effort));
+    let (sharp, sharp_rest) = fitted(&motion, &columns, &effort);
+    let (quiet, widest) = (motion.quiet, WIDEST_ROUNDING * motion.fastest);
+    if motion.stands {
+        return (motion, sharp, sharp_rest);
+    }
+    let rates = std::iter::successors(Some(ROUNDER * quiet), |rate| Some(ROUNDER * rate));
+    let mut best = (quiet, sharp, ROUNDED * sharp_rest);
+    for rate in rates.take_while(|rate| *rate < widest) {
+        motion = motion.with_full_friction_at(rate);
+        columns[2] = Shape::Coulomb.on_grid(&motion).remove(0);
+        let (parameters, rest) = fitted(&motion, &columns, &effort);
+        if rest < best.2 {
+            best = (rate, parameters, rest);
+        }
+    }
+    let (rate, parameters, rest) = best;
+    (motion.with_full_friction_at(rate), parameters, if rate > quiet { rest } else { sharp_rest })
+}
+
+/// Root mean square of what the nominal model leaves.
+pub(super) fn nominal_rest(motion: &Motion, model: &AxisModel) -> f64 {
+    let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
+    let (effort, parameters) = (motion.raw(&motion.effort), nominal(model));
+    let rest = |row: usize| effort[row] - (0..3).map(|place| parameters[place] * base[place][row]).sum::<f64>();
+    rms(&(0..effort.len()).map(rest).collect::<Vec<_>>())
+}

@@ -1,0 +1,101 @@
+//! What the fit to one log leaves of another, which it did not see.
+
+use gimbal_model_file::AxisModel;
+
+use super::balance::Balance;
+use super::judge::{Shrunk, by_block, shrunk};
+use super::library::{NOMINAL, Shape};
+use super::motion::BLOCKS;
+use super::plain::{needed, nominal, plain};
+use super::ready::ready;
+use super::search::Set;
+use super::table::AxisLog;
+
+/// What the fit to one log leaves of another.
+pub(super) fn score(
+    balance: &Balance,
+    best: &Set,
+    model: &AxisModel,
+    name: String,
+    log: AxisLog,
+    notes: &mut Vec<String>,
+) -> Vec<Shrunk> {
+    let (_, checked, motion) = ready(log, model);
+    let mut motion = motion.with_full_friction_at(balance.motion.full_at);
+    if Some(balance.motion.from) != checked.from {
+        notes.push(format!("{name}: its motion is taken from the other column"));
+    }
+    if motion.stands != balance.motion.stands {
+        notes.push(format!("{name}: one of the logs is at rest and the other moves; not compared"));
+        return Vec::new();
+    }
+    motion.needed = needed(&motion, plain(&balance.motion).0);
+    (motion.middle, motion.size) = (balance.motion.middle, balance.motion.size);
+    let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
+    let parameters = nominal(model);
+    let effort = motion.raw(&motion.effort);
+    let before: Vec<f64> =
+        (0..effort.len()).map(|row| effort[row] - (0..3).map(|p| parameters[p] * base[p][row]).sum::<f64>()).collect();
+    let (_, amplitudes) = balance.fit(&best.members);
+    let mut after = before.clone();
+    let mut place = 0;
+    let mut take = |columns: &[Vec<f64>], after: &mut Vec<f64>| {
+        for column in columns {
+            after.iter_mut().zip(column).for_each(|(r, value)| *r -= amplitudes[place] * value);
+            place += 1;
+        }
+    };
+    take(&base, &mut after);
+    for &member in &best.members {
+        let candidate = &balance.problem.candidates[member];
+        let channel = match candidate.shape {
+            Shape::Load { channel }
+            | Shape::LoadFriction { channel }
+            | Shape::LoadGain { channel }
+            | Shape::LoadRipple { channel, .. } => Some(&balance.motion.auxiliary[channel].0),
+            _ => None,
+        };
+        let there = channel.is_none_or(|name| motion.auxiliary.iter().any(|(other, _)| other == name));
+        let columns = if there {
+            candidate.shape.on_grid(&motion)
+        } else {
+            vec![vec![0.0; after.len()]; candidate.columns.len()]
+        };
+        take(&columns, &mut after);
+    }
+    let mut counts = vec![0.0; BLOCKS];
+    motion.block.iter().for_each(|&block| counts[block] += 1.0);
+    let unit = &model.effort_unit;
+    let whole = shrunk(
+        format!("effort of {name}, not fitted"),
+        unit,
+        &by_block(&before, &motion),
+        &by_block(&after, &motion),
+        &counts,
+        motion.floor,
+    );
+    let mut all = vec![whole];
+    // a load that the fitted log did not have is not the fit's to explain
+    for (channel, values) in &motion.auxiliary {
+        if balance.motion.auxiliary.iter().any(|(other, _)| other == channel) {
+            continue;
+        }
+        let off = |residual: &[f64]| -> Vec<f64> {
+            let rows = motion.rows.iter().zip(residual);
+            rows.map(|(&row, r)| if values[row].abs() < 1e-9 { *r } else { 0.0 }).collect()
+        };
+        let mut counts = vec![0.0; BLOCKS];
+        for (&row, &block) in motion.rows.iter().zip(&motion.block) {
+            counts[block] += if values[row].abs() < 1e-9 { 1.0 } else { 0.0 };
+        }
+        all.push(shrunk(
+            format!("effort of {name}, not fitted, {channel} off"),
+            unit,
+            &by_block(&off(&before), &motion),
+            &by_block(&off(&after), &motion),
+            &counts,
+            motion.floor,
+        ));
+    }
+    all
+}
