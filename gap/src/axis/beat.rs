@@ -57,7 +57,7 @@ pub(super) fn beat(motion: &Motion, residual: &[f64]) -> Option<Beat> {
         .map(|line| (line, left.own(line) / all))
         .filter(|(line, share)| *share > LEAST_SHARE && !of_mains(*line as f64 * left.step_hz))
         .filter(|(line, _)| !driven(*line))
-        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .max_by(|a, b| left.power[a.0].total_cmp(&left.power[b.0]))
         .map(|(line, share)| Beat { hz: line as f64 * left.step_hz, share })
 }
 

@@ -107,6 +107,17 @@ fn cross_wrong_columns_are_told_in_words_and_do_not_become_effects() {
 }
 
 #[test]
+fn cross_a_force_in_time_is_unknown_and_its_frequency_is_told() {
+    let truth = Truth { hum: (2.0, 7.3), ..Truth::nominal() };
+    for seed in 0..3 {
+        let diagnosis = diagnosed(&truth, Path::Sines, seed);
+        assert_eq!(diagnosis.verdict, Verdict::Unexplained, "{}", text(&diagnosis));
+        // lines lie 1/24 Hz apart
+        assert!(diagnosis.notes.iter().any(|note| note.contains("beats at 7.29 Hz")), "{}", text(&diagnosis));
+    }
+}
+
+#[test]
 fn cross_short_sticks_at_reversals_leave_nothing() {
     // friction there is whatever the effort is: with those rows in the balance more than twice the floor is left
     for seed in 0..3 {

@@ -31,6 +31,8 @@ pub(crate) struct Truth {
     pub(crate) ripple: Vec<(f64, f64, f64)>,
     pub(crate) motor_ripple: Vec<(f64, f64, f64)>,
     pub(crate) spring: f64,
+    /// A force in time, whatever the axis does: amplitude, frequency [Hz].
+    pub(crate) hum: (f64, f64),
     pub(crate) dead_zone: f64,
     pub(crate) delay_rows: usize,
     /// Pulses of load, as a code of 0 or 5.
@@ -59,6 +61,7 @@ impl Truth {
             ripple: Vec::new(),
             motor_ripple: Vec::new(),
             spring: 0.0,
+            hum: (0.0, 0.0),
             dead_zone: 0.0,
             delay_rows: 0,
             load_per_code: 0.0,
@@ -140,6 +143,7 @@ pub(crate) fn log(truth: &Truth, path: Path, length_s: f64, seed: u64) -> String
         let effort = held[truth.delay_rows];
         let effort =
             if truth.dead_zone > 0.0 { effort.signum() * (effort.abs() - truth.dead_zone).max(0.0) } else { effort };
+        let hum = truth.hum.0 * (std::f64::consts::TAU * truth.hum.1 * t).sin();
         for _ in 0..fine {
             let ripple: f64 = truth.ripple.iter().map(|(k, a, p)| a * (k * q - p).cos()).sum();
             let gain =
@@ -156,6 +160,7 @@ pub(crate) fn log(truth: &Truth, path: Path, length_s: f64, seed: u64) -> String
                 - force
                 - ripple
                 - truth.constant
+                - hum
                 - truth.spring * (q - 0.05)
                 - truth.load_per_code * code)
                 / truth.inertia;
