@@ -12,6 +12,7 @@ use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
 use crate::record::{BEGINNING_S, Data, Record, faults};
 use crate::settle::{Settled, settled};
+use crate::touch::touched;
 
 /// No fit that leaves more than this of the noise comes near a log.
 const ASTRAY: f64 = 1.5;
@@ -102,7 +103,12 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         Data::Doubtful(told, undone) => Some((told, undone)),
     };
     read.quieten(&crate::library::platform(model));
-    let whole = settled(&read, model);
+    let mut whole = settled(&read, model);
+    if let Some(touched) = touched(&whole) {
+        drop(whole);
+        touched.told(&mut read);
+        whole = settled(&read, model);
+    }
     let mut imitated = None;
     if let Some((told, undone)) = doubt {
         if mistaken(&whole, *undone, model) {

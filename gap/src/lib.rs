@@ -2,7 +2,7 @@
 //!
 //! A log is compared with predictions of the whole platform; every nominal parameter and every effect of the library
 //! is a direction in which the prediction may move. What moves it onto the log, at the least cost, is the diagnosis.
-//! The method, its limits and measured tables: `docs/gap.md`.
+//! The method: `docs/gap-method.md`. Its limits and measured tables: `docs/gap.md`.
 
 #![forbid(unsafe_code)]
 
@@ -27,6 +27,7 @@ pub mod record;
 pub mod report;
 mod settle;
 pub mod simulate;
+mod touch;
 mod window;
 
 pub use diagnose::{Diagnosis, diagnose};

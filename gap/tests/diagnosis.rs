@@ -9,6 +9,8 @@ use gimbal_gap::{Diagnosis, diagnose};
 use gimbal_log::{Column, Log};
 use gimbal_model_file::ModelFile;
 use gimbal_plant::Effect;
+use rand::RngExt;
+use rand_distr::StandardNormal;
 use serde_json::Value;
 
 const SECONDS: f64 = 20.0;
@@ -223,6 +225,28 @@ fn a_float_that_goes_past_its_stop_says_that_the_stop_is_farther() {
         assert_eq!(names(&diagnosis), found, "{share}: {:#}", report(&diagnosis)["notes"]);
         for own in &diagnosis.decision.as_ref().expect("a decision").found {
             assert!((own.values[0] - (1.0 / share - 1.0)).abs() < 2.0 * own.errors[0], "{:?}", own.values);
+        }
+    }
+}
+
+/// The float is on its stop for a few rows only, under noise of the pick-off: the loop's answer tells it.
+#[test]
+fn a_stop_that_is_touched_is_found_by_what_the_loop_makes_of_it() {
+    let stop_rad = ModelFile::default().config.gyro.stop_angle_rad;
+    let free = log_with(Excitation::Manoeuvre, &[]);
+    let theta_rad = free.column(Column::GyroAngle).expect("the pick-off");
+    let peak_rad = theta_rad.iter().fold(0.0, |peak: f64, own| peak.max(own.abs()));
+    for (share, found) in [(0.99, vec!["stop_angle"]), (2.0, vec![])] {
+        let change = share * peak_rad / stop_rad - 1.0;
+        let mut log = log_with(Excitation::Manoeuvre, &[("stop_angle", vec![change])]);
+        let mut rng = corpus::rng(23, 9);
+        let mut noisy = |theta: &f64| theta + 1e-5 * rng.sample::<f64, _>(StandardNormal);
+        let theta_rad = log.column(Column::GyroAngle).expect("the pick-off").iter().map(&mut noisy).collect();
+        log.set(Column::GyroAngle, theta_rad);
+        let diagnosis = diagnose(&log, &ModelFile::default());
+        assert_eq!(names(&diagnosis), found, "{share}: {:#}", report(&diagnosis)["notes"]);
+        for own in &diagnosis.decision.as_ref().expect("a decision").found {
+            assert!((own.values[0] - change).abs() < 2.0 * own.errors[0], "{change}: {:?}", own.values);
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::simulate::Physics;
 /// Standard deviation over tolerance within the tolerance, where nearly every value is as good as any other.
 const UNIFORM: f64 = 0.7;
 /// The same for what lies beyond it.
-const BEYOND: f64 = 0.12;
+const BEYOND: f64 = 0.04;
 
 /// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of 1 % would not.
 const STEP: f64 = 0.02;
@@ -38,7 +38,7 @@ impl Nuisance {
     /// holds at the shift `ahead`.
     ///
     /// ```text
-    /// cost = (s / sigma)^2 + (max(0, |s| - tol) / (0.12 tol))^2        sigma = 0.7 tol
+    /// cost = (s / sigma)^2 + (max(0, |s| - tol) / (0.04 tol))^2        sigma = 0.7 tol
     /// ```
     #[must_use]
     pub fn prior(&self, shift: f64, ahead: f64) -> (f64, f64, f64) {

@@ -177,15 +177,13 @@ impl Record {
         }
     }
 
-    /// Time on the stop, or so near it that the float may have touched it, is masked with what follows it for a while.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    /// Looks for time on the stop, or so near it that the float may have touched it.
     fn find_plateau(&mut self, config: &Config) {
-        let period_s = self.inputs.period_s;
-        let Some(theta) = self.channels.iter().find(|channel| channel.signal == Signal::GyroAngle) else { return };
+        let Some(theta) = self.channel(Signal::GyroAngle) else { return };
         let (peak, stop) = (peak_rad(&theta.values), config.gyro.stop_angle_rad);
-        let plateau = plateau(&theta.values, period_s, stop);
-        self.plateau_rad = plateau.as_ref().map(|plateau| plateau.level_rad);
-        let on_stop = if let Some(plateau) = plateau {
+        let plateau = plateau(&theta.values, self.inputs.period_s, stop);
+        let level_rad = plateau.as_ref().map(|plateau| plateau.level_rad);
+        let on_stop: Vec<bool> = if let Some(plateau) = plateau {
             plateau.on_stop
         } else {
             // a touch too short to be seen, wherever the stop is within its tolerance
@@ -195,8 +193,22 @@ impl Record {
             }
             theta.values.iter().map(|value| value.abs() > near).collect()
         };
+        self.plateau_rad = level_rad;
+        self.leave_out(&on_stop);
+    }
+
+    /// Takes the float to have been on a stop that its plateaus are too short to show.
+    pub(crate) fn touches(&mut self, level_rad: f64, on_stop: &[bool]) {
+        self.plateau_rad = Some(level_rad);
+        self.leave_out(on_stop);
+    }
+
+    /// Masks the time on a stop and what follows it for a while.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    fn leave_out(&mut self, on_stop: &[bool]) {
+        let period_s = self.inputs.period_s;
         let rows = |time_s: f64| (time_s / period_s) as usize;
-        let mut free = away(&on_stop, [COMES_S, SETTLES_S].map(rows), rows(WORTH_S));
+        let mut free = away(on_stop, [COMES_S, SETTLES_S].map(rows), rows(WORTH_S));
         if free.len() > MOST_RUNS {
             free.sort_by_key(|free| std::cmp::Reverse(free.len()));
             free.truncate(MOST_RUNS);
