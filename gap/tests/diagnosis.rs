@@ -229,6 +229,18 @@ fn a_float_that_goes_past_its_stop_says_that_the_stop_is_farther() {
     }
 }
 
+/// Rounding leaves what no effect takes; that is no reason to take back an effect that stands by itself.
+#[test]
+fn an_effect_beside_a_quantised_pickoff_is_named() {
+    let effects = [("loop_delay", vec![4e-4]), ("pickoff_quantisation", vec![2e-5])];
+    let diagnosis = diagnose(&log_with(Excitation::Flight, &effects), &ModelFile::default());
+    assert_eq!(names(&diagnosis), ["loop_delay", "pickoff_quantisation"], "{:#}", report(&diagnosis)["notes"]);
+    let decision = diagnosis.decision.as_ref().expect("a decision");
+    for (found, (_, value)) in decision.found.iter().zip(&effects) {
+        assert!((found.values[0] - value[0]).abs() < 3.0 * found.errors[0], "{found:?}");
+    }
+}
+
 /// The float is on its stop for a few rows only, under noise of the pick-off: the loop's answer tells it.
 #[test]
 fn a_stop_that_is_touched_is_found_by_what_the_loop_makes_of_it() {

@@ -32,7 +32,9 @@ const MOVING: Limits = Limits { left_over: 14.0, left_over_scale: 1.5, strange: 
 /// How much more torques of no effect must take where the bearing turns around most of the time: the noise of the rate is
 /// like some of them.
 const WARY: f64 = 1.6;
-/// Probability of something unknown beside what the samples show by themselves.
+/// What may be left beside what the samples show by themselves [standard deviations].
+const ROUGH: f64 = 10.0 * TURNING.left_over;
+/// Probability of something unknown beside it.
 const SHOWN: f64 = 0.05;
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
@@ -163,6 +165,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let probabilities = Probabilities::new(&sets);
     let limits = Limits::of(problem);
     let worthy = best(&sets, |set| set.nats - set.cost).map(|best| probabilities.fuller(&sets, best));
+    let sure = worthy.is_some();
     let rather = || probabilities.rather_than_nothing(&sets).filter(|_| moves_freely(problem));
     let worthy = worthy.or_else(rather);
     let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
@@ -184,6 +187,10 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         unknown(past(after, limits.left_over, limits.left_over_scale), after / before.max(after).max(1e-9), found);
     let share = strange / (strange + taken).max(1e-9);
     let unknown = left.max(unknown(strangeness(strange, limits.strange, limits.strange_scale), share, found));
+    // what a quantised pick-off leaves is no reason to take back what brings all that a verdict asks for
+    let step = pickoff_step(problem, fit);
+    let stepped = sure && unknown > UNEXPLAINED[1] && step.is_some() && after < ROUGH;
+    let unknown = if stepped { SHOWN } else { unknown };
     let mut decision = Decision {
         verdict: Verdict::NoGap,
         found: Vec::new(),
@@ -202,7 +209,9 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
             decision.found.clear();
             decision.chosen = None;
             Verdict::Unexplained
-        } else if after > limits.left_over + limits.left_over_scale || strange > limits.strange + limits.strange_scale {
+        } else if !stepped
+            && (after > limits.left_over + limits.left_over_scale || strange > limits.strange + limits.strange_scale)
+        {
             Verdict::PartlyExplained
         } else if decision.rivals(&best.effects).is_empty() {
             Verdict::Explained
@@ -217,7 +226,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         decision.notes.push(format!("what is left goes with {stranger}"));
     }
     decision.notes.extend(like_a_bias(problem, &decision.found));
-    direct(problem, fit, tolerance, &mut decision);
+    direct(problem, step, tolerance, &mut decision);
     decision
 }
 
@@ -268,7 +277,7 @@ pub(crate) fn strangeness(nats: f64, limit: f64, scale: f64) -> f64 {
 }
 
 /// What the samples show by themselves: a stop elsewhere, as the pick-off reads it, and a grid of angles.
-fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut Decision) {
+fn direct(problem: &Problem, step: Option<f64>, tolerance: &Tolerance, decision: &mut Decision) {
     let scale = |found: &Found| if found.effect == "pickoff_scale" { found.values[0] } else { 0.0 };
     let pickoff = 1.0 + decision.found.iter().map(scale).sum::<f64>();
     let mut add = |effect: &'static str, value: f64, error: f64, probability: f64| {
@@ -284,7 +293,7 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
             set.effects.push(effect);
         }
         if decision.verdict == Verdict::NoGap
-            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < 10.0 * TURNING.left_over
+            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < ROUGH
         {
             decision.verdict = Verdict::Explained;
             let sure = 1.0 - decision.unknown_probability;
@@ -299,7 +308,7 @@ fn direct(problem: &Problem, fit: &Fit, tolerance: &Tolerance, decision: &mut De
     if let Some((change, error)) = stop_change(problem, pickoff, tolerance) {
         add("stop_angle", change, error, 0.95);
     }
-    if let Some(step) = pickoff_step(problem, fit) {
+    if let Some(step) = step {
         add("pickoff_quantisation", step, 1e-3 * step, 0.97);
     }
 }
