@@ -24,8 +24,11 @@ const PERIODS: usize = 12;
 /// Frequencies of the mains and twice them, and how near to them a line is the mains' [Hz].
 const MAINS_HZ: [f64; 4] = [50.0, 60.0, 100.0, 120.0];
 const NEAR_HZ: f64 = 0.5;
-/// Share of the rows with a rate within a tenth of the middle one, from which on waves of place are lines in time.
-const EVEN_RATE: f64 = 0.5;
+/// Share of the rows about which the rate stays what it is, for so long and to that share of itself, from which on waves of
+/// place are lines in time.
+const EVEN_RATE: f64 = 0.4;
+const STAYS_S: f64 = 0.25;
+const STAYS: f64 = 0.05;
 
 /// A line in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,13 +68,16 @@ fn of_mains(hz: f64) -> bool {
     MAINS_HZ.iter().any(|mains| (hz - mains).abs() < NEAR_HZ)
 }
 
-/// Whether the axis goes at one rate most of the time.
+/// Whether the axis goes on at its rate, one or another, much of the time.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
 fn at_even_rate(motion: &Motion) -> bool {
-    let mut rates: Vec<f64> = motion.rows.iter().map(|&row| motion.v[row].abs()).collect();
-    rates.sort_by(f64::total_cmp);
-    let Some(&middle) = rates.get(rates.len() / 2) else { return true };
-    let even = rates.iter().filter(|rate| (*rate - middle).abs() < 0.1 * middle).count();
-    even as f64 > EVEN_RATE * rates.len() as f64
+    let half = (0.5 * STAYS_S / motion.period_s) as usize;
+    let stays = |row: usize| {
+        let [from, to] = [row.saturating_sub(half), row + half].map(|row| motion.v.get(row).copied().unwrap_or(0.0));
+        (to - from).abs() < STAYS * motion.v[row].abs()
+    };
+    let even = motion.rows.iter().filter(|&&row| stays(row)).count();
+    even as f64 > EVEN_RATE * motion.rows.len() as f64
 }
 
 /// Power of a signal on the grid over frequency; rows that do not count are zero.

@@ -2,6 +2,7 @@
 
 use gimbal_log::Column;
 
+use super::rough::rough;
 use super::spikes::spikes;
 
 /// What an output is.
@@ -32,9 +33,20 @@ impl Signal {
 
 /// Rows for which a value is held.
 const HELD: usize = 5;
-/// Time from whose samples the beginning is taken, and how many there must be [s].
+/// Longest time from whose samples the beginning is taken, and how many there must be [s].
 const BEGINNING_S: f64 = 0.02;
 const FEWEST: usize = 4;
+
+/// What a line through the beginning may leave, over the noise.
+const BENT: f64 = 2.0;
+
+/// A line through the first samples.
+struct Line {
+    /// Its first value.
+    begins: f64,
+    /// Rms of what it leaves.
+    leaves: f64,
+}
 
 /// One measured output on the grid.
 #[derive(Debug, Clone)]
@@ -65,19 +77,30 @@ impl Channel {
         sizes.windows(HELD).map(|few| few.iter().copied().fold(f64::MAX, f64::min)).fold(0.0, f64::max)
     }
 
-    /// Value with which it begins, of a line through its first samples; none where most are missing.
+    /// Value with which it begins, of the longest line through its first samples that leaves no more than its noise; none
+    /// where most of them are missing.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of rows")]
     pub(super) fn beginning(&self, period_s: f64) -> Option<f64> {
-        let rows = ((BEGINNING_S / period_s) as usize).max(FEWEST).min(self.values.len());
+        let longest = ((BEGINNING_S / period_s) as usize).max(FEWEST).min(self.values.len());
+        let noise = rough(&self.values, &self.valid);
+        let halved = std::iter::successors(Some(longest), |rows| Some(rows / 2).filter(|rows| *rows >= FEWEST));
+        let lines: Vec<Line> = halved.map_while(|rows| self.line(rows)).collect();
+        let straight = lines.iter().find(|line| line.leaves < BENT * noise);
+        straight.or(lines.last()).map(|line| line.begins)
+    }
+
+    /// The line through its first rows; none where most of them are missing.
+    fn line(&self, rows: usize) -> Option<Line> {
         let known: Vec<(f64, f64)> =
-            (0..rows).filter(|&row| self.valid[row]).map(|row| (row as f64 * period_s, self.values[row])).collect();
+            (0..rows).filter(|&row| self.valid[row]).map(|row| (row as f64, self.values[row])).collect();
         if known.len() < FEWEST || 2 * known.len() < rows {
             return None;
         }
         let mean = |of: &dyn Fn(&(f64, f64)) -> f64| known.iter().map(of).sum::<f64>() / known.len() as f64;
-        let (time_s, value) = (mean(&|known| known.0), mean(&|known| known.1));
-        let slope = mean(&|known| (known.0 - time_s) * (known.1 - value)) / mean(&|known| (known.0 - time_s).powi(2));
-        Some(value - slope * time_s)
+        let (row, value) = (mean(&|known| known.0), mean(&|known| known.1));
+        let slope = mean(&|known| (known.0 - row) * (known.1 - value)) / mean(&|known| (known.0 - row).powi(2));
+        let leaves = mean(&|known| (known.1 - value - slope * (known.0 - row)).powi(2)).sqrt();
+        Some(Line { begins: value - slope * row, leaves })
     }
 
     /// Takes samples that stand alone for missing, and says so.
@@ -105,5 +128,18 @@ mod tests {
         let mut missing = held;
         missing[5] = f64::NAN;
         assert!((channel(&missing).held_peak() - 0.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn closed_form_a_beginning_is_that_of_the_longest_line() {
+        let begins = |value: fn(usize) -> f64| {
+            let values = (0..1000).map(|row| value(row) + 1e-3 * [1.0, -1.0, -0.5, 0.5][row % 4]).collect();
+            Channel::new(Signal::MotorTorque, values).beginning(1e-3).expect("samples")
+        };
+        let straight = begins(|row| 3.0 + 0.1 * row as f64);
+        assert!((straight - 3.0).abs() < 1e-3, "{straight}");
+        // it jumps after 12 ms
+        let jumps = begins(|row| if row < 12 { 3.0 } else { 9.0 });
+        assert!((jumps - 3.0).abs() < 2e-3, "{jumps}");
     }
 }

@@ -39,9 +39,10 @@ const TRIFLE: f64 = 0.01;
 const RIVAL: f64 = 0.1;
 /// A gap is one from this power over the floor on.
 const NOTABLE: f64 = 1.5;
-/// What is left by nothing that is named is no noise from this many times that on; nor is it where a run of blocks has this
-/// many times the power of the middle one, and of noise.
+/// What is left by nothing that is named is no noise from this many times that and this share of the effort on; nor is it
+/// where a run of blocks has this many times the power of the middle one and of noise, and the middle one's share of the effort.
 const NO_NOISE: f64 = 3.2;
+const NO_TRIFLE: f64 = 0.03;
 const RUN: usize = 3;
 const APART: f64 = 4.0;
 
@@ -154,7 +155,9 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
     let rest = Rest::of(&shrunk);
     let verdict = if found.is_empty() {
-        let left = rest.over_noise > NO_NOISE || stands_out(&best.held_out, counts, floor);
+        let effort = by_block(&balance.motion.pick(&balance.motion.effort), &balance.motion);
+        let left = rest.over_noise > NO_NOISE && shrunk.after > NO_TRIFLE * rms_of(&effort, counts)
+            || stands_out(&best.held_out, &effort, counts, floor);
         if gap && (left || rest.share > 0.5 && !tolerated(balance, model)) {
             Verdict::Unexplained
         } else {
@@ -178,15 +181,29 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     judged
 }
 
-/// Whether a run of blocks has much more left than the others: something that comes and goes.
-fn stands_out(squares: &[f64], counts: &[f64], floor: f64) -> bool {
-    let powers = squares.iter().zip(counts).filter(|(_, count)| **count > 0.0).map(|(square, count)| square / count);
-    let powers: Vec<f64> = powers.collect();
-    let mut sorted = powers.clone();
+/// Whether a run of blocks has much more left than the others, however much effort there is: something that comes and goes.
+fn stands_out(squares: &[f64], effort: &[f64], counts: &[f64], floor: f64) -> bool {
+    let of_rows = |squares: &[f64]| -> Vec<f64> {
+        let held = squares.iter().zip(counts).filter(|(_, count)| **count > 0.0);
+        held.map(|(square, count)| square / count).collect()
+    };
+    let (powers, efforts) = (of_rows(squares), of_rows(effort));
+    let shares: Vec<f64> = powers.iter().zip(&efforts).map(|(power, effort)| power / effort.max(1e-300)).collect();
+    let least = APART * middle(&powers).max(floor.powi(2));
+    let least_share = APART * middle(&shares);
+    let apart: Vec<bool> = powers.iter().zip(&shares).map(|own| *own.0 > least && *own.1 > least_share).collect();
+    apart.windows(RUN).any(|run| run.iter().all(|apart| *apart))
+}
+
+/// Rms of what has these squares in blocks of so many values.
+fn rms_of(squares: &[f64], counts: &[f64]) -> f64 {
+    (squares.iter().sum::<f64>() / counts.iter().sum::<f64>().max(1.0)).sqrt()
+}
+
+fn middle(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let Some(middle) = sorted.get(sorted.len() / 2) else { return false };
-    let least = APART * middle.max(floor.powi(2));
-    powers.windows(RUN).any(|run| run.iter().all(|power| *power > least))
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
 /// Each set with friction beyond its tolerance once more with a dead zone instead: the two are one column.
