@@ -200,6 +200,9 @@ impl Record {
     /// Takes the float to have been on a stop that its plateaus are too short to show.
     pub(crate) fn touches(&mut self, level_rad: f64, on_stop: &[bool]) {
         self.plateau_rad = Some(level_rad);
+        self.notes.push(format!(
+            "the float touched a stop at {level_rad:.3e} rad: the loop's answer tells it, no plateau does"
+        ));
         self.leave_out(on_stop);
     }
 
