@@ -233,7 +233,7 @@ fn a_float_that_goes_past_its_stop_says_that_the_stop_is_farther() {
 #[test]
 fn an_effect_beside_a_quantised_pickoff_is_named() {
     let effects = [("loop_delay", vec![4e-4]), ("pickoff_quantisation", vec![2e-5])];
-    let diagnosis = diagnose(&log_with(Excitation::Flight, &effects), &ModelFile::default());
+    let diagnosis = diagnose(&log_with(Excitation::Manoeuvre, &effects), &ModelFile::default());
     assert_eq!(names(&diagnosis), ["loop_delay", "pickoff_quantisation"], "{:#}", report(&diagnosis)["notes"]);
     let decision = diagnosis.decision.as_ref().expect("a decision");
     for (found, (_, value)) in decision.found.iter().zip(&effects) {

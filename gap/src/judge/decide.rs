@@ -174,7 +174,8 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
             || pickoff_step(problem, &search.null).is_some()
     };
     // a gap that torques of no effect show, or the pick-off's steps, is none that the effect has to show
-    let best = worthy.or_else(|| best(&sets, |set| set.nats - set.rare).filter(|_| shown()));
+    let likely = |set: &Weighed| if set.acts_on_float() { 0.0 } else { set.nats - set.rare };
+    let best = worthy.or_else(|| best(&sets, likely).filter(|_| shown()));
     let chosen = best.and_then(|set| set.fit);
     let before = left_over(problem, &search.null.residual);
     let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index].residual));

@@ -8,14 +8,14 @@ const SCALE: f64 = 3.5;
 const SCALE_BESIDE: f64 = 5.0;
 const SCALE_SHARE: f64 = 1e-5;
 /// The same where evidence is as small as chance makes it, and how far below that reaches [nats].
-const SCALE_OF_CHANCE: f64 = 1.3;
+const SCALE_OF_CHANCE: f64 = 1.0;
 const CHANCE: f64 = 1.0;
 /// Probability from which on fuller sets are named in the place of the one that is part of them.
 const LIKELIER: f64 = 0.5;
 /// How much likelier than that one the likeliest of them must be.
 const THAN_ONE: f64 = 1.5;
 /// Probability of there being nothing from which on down there is something.
-const HARDLY: f64 = 0.2;
+const HARDLY: f64 = 0.1;
 
 /// A set of effects and its probability.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,8 +80,7 @@ impl Probabilities {
     pub(crate) fn rather_than_nothing<'a>(&self, sets: &'a [Weighed]) -> Option<&'a Weighed> {
         let fitted = sets.iter().zip(&self.sets).filter(|(set, _)| set.fit.is_some());
         let likeliest = fitted.max_by(|a, b| a.1.total_cmp(b.1)).map(|(set, _)| set);
-        let on_float = |effect: &&str| ["float_torque", "g_sensitive_float_torque"].contains(effect);
-        likeliest.filter(|set| self.nothing < HARDLY && !set.effects.iter().any(on_float))
+        likeliest.filter(|set| self.nothing < HARDLY && !set.acts_on_float())
     }
 
     /// The most probable first.

@@ -64,6 +64,13 @@ pub(crate) struct Weighed {
     pub(crate) rare: f64,
 }
 
+impl Weighed {
+    /// Whether it holds a torque on the float, which a bias of the logged rate seems to be too.
+    pub(crate) fn acts_on_float(&self) -> bool {
+        self.effects.iter().any(|effect| ["float_torque", "g_sensitive_float_torque"].contains(effect))
+    }
+}
+
 /// Every set that was fitted, in their order, then every effect that was only glimpsed.
 pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Vec<Weighed> {
     let closest = search.closest();
