@@ -106,7 +106,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let mut whole = settled(&read, model);
     if let Some(touched) = touched(&whole) {
         drop(whole);
-        touched.told(&mut read);
+        read.touches(touched.level_rad, &touched.on_stop);
         whole = settled(&read, model);
     }
     let mut imitated = None;

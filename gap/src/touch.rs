@@ -2,7 +2,7 @@
 //! answer it for as long as it remembers.
 
 use crate::fit::raw_residual;
-use crate::record::{Record, Signal};
+use crate::record::Signal;
 use crate::settle::Settled;
 use crate::simulate::{Variant, predict_each};
 
@@ -23,9 +23,9 @@ const SHARE: f64 = 0.15;
 /// A stop where none was seen.
 pub(crate) struct Touched {
     /// Its angle, as the pick-off shows it.
-    level_rad: f64,
+    pub(crate) level_rad: f64,
     /// Rows on it.
-    on_stop: Vec<bool>,
+    pub(crate) on_stop: Vec<bool>,
 }
 
 /// The stop that takes most of what the closest fit leaves; none where that is little.
@@ -59,15 +59,5 @@ pub(crate) fn touched(Settled { problem, search, .. }: &Settled) -> Option<Touch
         apart_rad *= NEARER;
     }
     let (square, level_rad, on_stop) = best;
-    if closest.square - square < least {
-        return None;
-    }
-    Some(Touched { level_rad, on_stop })
-}
-
-impl Touched {
-    /// A record that knows of it.
-    pub(crate) fn told(self, record: &mut Record) {
-        record.touches(self.level_rad, &self.on_stop);
-    }
+    (closest.square - square > least).then_some(Touched { level_rad, on_stop })
 }
