@@ -1,8 +1,8 @@
 //! A stop that the float only touches: too short a plateau to be seen under the pick-off's noise, long enough for the loop to
 //! answer it for as long as it remembers.
 
-use crate::fit::raw_residual;
-use crate::record::Signal;
+use crate::fit::Outcome;
+use crate::record::{LEAST_STOP, Signal};
 use crate::settle::Settled;
 use crate::simulate::{Variant, predict_each};
 
@@ -14,8 +14,6 @@ const APART_SHARE: f64 = 5e-4;
 /// How often they are tried again around the best of them, nearer by so much.
 const AGAIN: usize = 1;
 const NEARER: f64 = 0.2;
-/// Share of the nominal stop from which on a stop is looked for.
-const LEAST_STOP: f64 = 0.2;
 /// What a stop must take away [nats], and what share of all that is beyond the noise.
 const LEAST: f64 = 40.0;
 const SHARE: f64 = 0.15;
@@ -51,9 +49,8 @@ pub(crate) fn touched(Settled { problem, search, .. }: &Settled) -> Option<Touch
         let levels_rad: Vec<f64> = (0..LEVELS).map(level_rad).collect();
         let variants: Vec<Variant> = levels_rad.iter().map(stopped).collect();
         let tried = predict_each(&variants, &record.inputs, |index, prediction| {
-            let residual = problem.whiten(raw_residual(record, &prediction));
-            let square: f64 = residual.iter().map(|value| value * value).sum();
-            (square, levels_rad[index], prediction.on_stop)
+            let outcome = Outcome::of(problem, prediction);
+            (outcome.square, levels_rad[index], outcome.prediction.on_stop)
         });
         best = [best].into_iter().chain(tried).min_by(|a, b| a.0.total_cmp(&b.0))?;
         apart_rad *= NEARER;

@@ -49,7 +49,7 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    fn of(problem: &Problem, prediction: Prediction) -> Self {
+    pub(crate) fn of(problem: &Problem, prediction: Prediction) -> Self {
         let residual = problem.whiten(residual(problem.record, &prediction));
         let square = residual.iter().map(|value| value * value).sum();
         Self { prediction, residual, square }

@@ -18,7 +18,7 @@ use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
 pub use faults::{Data, faults};
 pub(crate) use part::BEGINNING_S;
-pub(crate) use plateau::{peak_rad, plateau};
+pub(crate) use plateau::{LEAST_STOP, peak_rad, plateau};
 pub use quiet::RateNoise;
 pub(crate) use quiet::between;
 pub(crate) use rough::{rough, tails};

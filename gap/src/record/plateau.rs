@@ -13,8 +13,8 @@ const ONWARD: f64 = 7.0;
 /// The same over the scatter on the plateau: wherever the stop is, the float stands still on it as no peak does.
 const ENTERS: f64 = 30.0;
 const FLAT: f64 = 150.0;
-/// Least share of the nominal stop at which a plateau that scatters is one.
-const LEAST_STOP: f64 = 0.2;
+/// Least share of the nominal stop at which a plateau that scatters is one, or a stop without a plateau is looked for.
+pub(crate) const LEAST_STOP: f64 = 0.2;
 /// Shortest plateau [s].
 const SHORTEST_S: f64 = 0.008;
 

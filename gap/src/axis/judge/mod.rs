@@ -18,6 +18,7 @@ pub(super) use shrunk::{by_block, shrunk};
 use gimbal_model_file::AxisModel;
 
 use super::balance::Balance;
+use super::library::rms;
 use super::search::Set;
 use crate::judge::Verdict;
 
@@ -155,9 +156,9 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
     let rest = Rest::of(&shrunk);
     let verdict = if found.is_empty() {
-        let effort = by_block(&balance.motion.pick(&balance.motion.effort), &balance.motion);
-        let left = rest.over_noise > NO_NOISE && shrunk.after > NO_TRIFLE * rms_of(&effort, counts)
-            || stands_out(&best.held_out, &effort, counts, floor);
+        let effort = balance.motion.pick(&balance.motion.effort);
+        let left = rest.over_noise > NO_NOISE && shrunk.after > NO_TRIFLE * rms(&effort)
+            || stands_out(&best.held_out, &by_block(&effort, &balance.motion), counts, floor);
         if gap && (left || rest.share > 0.5 && !tolerated(balance, model)) {
             Verdict::Unexplained
         } else {
@@ -193,11 +194,6 @@ fn stands_out(squares: &[f64], effort: &[f64], counts: &[f64], floor: f64) -> bo
     let least_share = APART * middle(&shares);
     let apart: Vec<bool> = powers.iter().zip(&shares).map(|own| *own.0 > least && *own.1 > least_share).collect();
     apart.windows(RUN).any(|run| run.iter().all(|apart| *apart))
-}
-
-/// Rms of what has these squares in blocks of so many values.
-fn rms_of(squares: &[f64], counts: &[f64]) -> f64 {
-    (squares.iter().sum::<f64>() / counts.iter().sum::<f64>().max(1.0)).sqrt()
 }
 
 fn middle(values: &[f64]) -> f64 {
