@@ -17,13 +17,11 @@ use super::waves::waves;
 const SLIP_ROWS: usize = 400;
 /// Slip is steady where its direction is smoothed by no more than this.
 const STEADY: f64 = 0.97;
-/// Play of a hysteresis at most, over the travel.
-const WIDEST_PLAY: f64 = 0.5;
-/// Frequencies of a mode, about that of the scan, among which the best one is.
-const MODE_SPAN: f64 = 1.08;
 /// A column must keep this share of its power beside the nominal parameters, and this much through the band.
 const LEAST_KEPT: f64 = 1e-4;
 const LEAST_PASSED: f64 = 0.02;
+/// A gap is one from this power over that of noise on.
+const NOTABLE: f64 = 1.5;
 /// And no more than this share of its deviation may be noise of the motion.
 const MOST_NOISE: f64 = 0.4;
 
@@ -35,6 +33,8 @@ pub(super) struct Balance {
     pub(super) target: Vec<f64>,
     /// Effort on the grid.
     pub(super) effort: Vec<f64>,
+    /// Parameters and a constant of the effort needed.
+    pub(super) needs: [f64; 4],
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) problem: Problem,
     /// Effects that this motion cannot show.
@@ -44,10 +44,28 @@ pub(super) struct Balance {
 }
 
 impl Balance {
-    /// Makes the balance and every column.
-    pub(super) fn new(motion: Motion, model: &AxisModel) -> Self {
-        let (mut motion, found, rest) = rounded(motion);
-        motion.needed = needed(&motion, if motion.stands { [0.0, 0.0, model.coulomb, 0.0] } else { found });
+    /// The balance in which effects and friction's corner were found, and those effects. An effect that the nominal
+    /// parameters lack may look like a rounder corner: where another one leaves less beside what is found, all is looked for
+    /// once more.
+    pub(super) fn searched(motion: Motion, model: &AxisModel) -> (Self, Set) {
+        let mut balance = Self::new(motion.clone(), model, &[]);
+        let set = balance.search(model);
+        let found: Vec<Shape> =
+            set.members.iter().map(|&member| balance.problem.candidates[member].shape.clone()).collect();
+        if found.is_empty() || rounded(motion.clone(), &found).0.full_at.to_bits() == balance.motion.full_at.to_bits() {
+            return (balance, set);
+        }
+        let mut again = Self::new(motion, model, &found);
+        let other = again.search(model);
+        let left = |balance: &Self, set: &Set| rms(&balance.residual(&set.members));
+        if left(&again, &other) < left(&balance, &set) { (again, other) } else { (balance, set) }
+    }
+
+    /// Makes the balance and every column, friction's corner as it is beside some effects.
+    fn new(motion: Motion, model: &AxisModel, beside: &[Shape]) -> Self {
+        let (mut motion, found, rest) = rounded(motion, beside);
+        let needs = if motion.stands { [0.0, 0.0, model.coulomb, 0.0] } else { found };
+        motion.needed = needed(&motion, needs);
         motion.size = rms(&motion.needed).max(1e-30);
         let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
         let effort = motion.raw(&motion.effort);
@@ -93,7 +111,7 @@ impl Balance {
         let made_dead = candidates.iter().any(|candidate| candidate.shape == Shape::DeadZone);
         let mut grams = Grams::new(&columns, &target, &motion.block);
         candidates.retain(|candidate| {
-            let released = NOMINAL.contains(&candidate.shape);
+            let released = candidate.shape == Shape::Scale || NOMINAL.contains(&candidate.shape);
             let beside: Vec<usize> = (0..3).collect();
             let kept = candidate.columns.iter().map(|&column| grams.keeps(column, &beside)).fold(0.0, f64::max);
             let shows = released || kept > LEAST_KEPT;
@@ -122,11 +140,12 @@ impl Balance {
             slip,
             within: within(model, parameters),
         };
-        Self { motion, target, effort, columns, problem, hidden, dead_zone_is_friction }
+        Self { motion, target, effort, needs, columns, problem, hidden, dead_zone_is_friction }
     }
 
-    /// Searches, takes the priors from what is then left, refines the shapes, and searches again.
-    pub(super) fn search(&mut self, model: &AxisModel) -> Set {
+    /// Searches, takes the priors from what is then left, refines the shapes, and searches again. Nothing is found in what
+    /// is no more than noise.
+    fn search(&mut self, model: &AxisModel) -> Set {
         let mut best = self.problem.search(Vec::new());
         for _ in 0..2 {
             let residual = self.residual(&best.members);
@@ -138,7 +157,12 @@ impl Balance {
             self.refine(&best.members);
             best = self.problem.search(best.members);
         }
-        best
+        if self.has_gap() { best } else { self.problem.set(Vec::new()) }
+    }
+
+    /// Whether the nominal model leaves more than noise.
+    pub(super) fn has_gap(&self) -> bool {
+        rms(&self.target).powi(2) > NOTABLE * self.motion.floor.max(1e-300).powi(2)
     }
 
     /// Amplitudes of a set's columns.
@@ -197,56 +221,6 @@ impl Balance {
         }
         residual
     }
-
-    /// Moves the shape parameters of the members to where the fit is best, and adds those shapes to the library.
-    fn refine(&mut self, members: &[usize]) {
-        let mut added = false;
-        for &member in members {
-            let shape = self.problem.candidates[member].shape.clone();
-            let Some(&(name, value)) = shape.numbers().first() else { continue };
-            if name == "wave_number" && self.motion.rotary {
-                continue;
-            }
-            let others: Vec<usize> = members.iter().copied().filter(|other| *other != member).collect();
-            let rest: Vec<usize> = self.problem.columns(&others);
-            let span =
-                if name == "wave_number" { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
-            let (from, to) = match &shape {
-                Shape::ViscousCurve { .. } => (0.45, 0.85),
-                // a resonance has one peak no further than its neighbours in the scan
-                Shape::Mode { .. } => (value / MODE_SPAN, value * MODE_SPAN),
-                // wider than that it is a spring
-                Shape::Hysteresis { .. } => (value / span, (value * span).min(WIDEST_PLAY * self.motion.travel)),
-                _ => (value / span, value * span),
-            };
-            let cost = |number: f64| {
-                let grid = shape.with(number).on_grid(&self.motion);
-                let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
-                columns.extend(grid);
-                let mut grams = Grams::new(&columns, &self.target, &self.motion.block);
-                for (place, &column) in rest.iter().enumerate() {
-                    grams.precision[place] = self.problem.grams.precision[column];
-                }
-                grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
-            };
-            let best = golden(from, to, cost);
-            let shape = shape.with(best);
-            let start = self.columns.len();
-            self.columns.extend(shape.on_grid(&self.motion));
-            for column in &self.columns[start..] {
-                let friction = shape.brakes();
-                let along = if friction { self.problem.slip.along(column) } else { Vec::new() };
-                self.problem.slip.columns.push(along);
-            }
-            self.problem.candidates.push(Candidate { shape, columns: (start..self.columns.len()).collect() });
-            added = true;
-        }
-        if added {
-            let precision = self.problem.grams.precision.clone();
-            self.problem.grams = Grams::new(&self.columns, &self.target, &self.motion.block);
-            self.problem.grams.precision[..precision.len()].copy_from_slice(&precision);
-        }
-    }
 }
 
 /// Noise that the motion brings into a column of its higher derivatives.
@@ -256,26 +230,6 @@ fn noise_of(shape: &Shape, motion: &Motion, model: &AxisModel) -> f64 {
         Shape::Flexible => motion.derivative_noise(4),
         _ => 0.0,
     }
-}
-
-/// Smallest value of a function of a logarithm, by golden section.
-fn golden(from: f64, to: f64, cost: impl Fn(f64) -> f64) -> f64 {
-    let ratio = 0.618_034;
-    let (mut low, mut high) = (from.ln(), to.ln());
-    let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
-    let (mut at_a, mut at_b) = (cost(a.exp()), cost(b.exp()));
-    for _ in 0..7 {
-        if at_a < at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - ratio * (high - low);
-            at_a = cost(a.exp());
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + ratio * (high - low);
-            at_b = cost(b.exp());
-        }
-    }
-    if at_a < at_b { a.exp() } else { b.exp() }
 }
 
 /// Friction at rows of steady slip, away from reversals and from what smoothing reaches of them: of the nominal model,

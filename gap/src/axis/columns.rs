@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use gimbal_model_file::AxisModel;
 
 use super::follows::{follows, lateness_error};
+use super::judge::BEYOND;
 use super::library::rms;
 use super::motion::{Motion, MotionFrom, NARROW};
 use super::noise::step;
@@ -56,7 +57,8 @@ impl Checked {
     }
 }
 
-/// How much nearer to the model another time must bring its parameters than another position or rate (a logarithm).
+/// How much nearer to the model another time must bring its parameters than another position or rate (a logarithm), where
+/// it is not the only one that brings them inside of their tolerances.
 const OTHER_TIME: f64 = 0.1;
 /// Share of a column that roundings of two formulas leave.
 const EXACT: f64 = 1e-5;
@@ -206,10 +208,11 @@ fn scale(
             let ratio = found[place].abs() / nominal(model)[place].max(1e-300);
             if nominal(model)[place] > 0.0 { ratio.max(1e-6).ln().abs().min(6.0) } else { 0.0 }
         };
-        away(0) + away(1)
+        let beyond = away(0) > BEYOND * model.tolerance.inertia || away(1) > BEYOND * model.tolerance.viscous;
+        (away(0) + away(1), beyond)
     };
     // a column that is known to be good is not the wrong one
-    let unless = |effect: &str, distance: f64| if model.trusts(effect) { f64::MAX } else { distance };
+    let unless = |effect: &str, distance: (f64, bool)| if model.trusts(effect) { (f64::MAX, true) } else { distance };
     let by_position = unless("velocity_scale", distance(log, MotionFrom::Position));
     let by_velocity = unless("position_scale", distance(log, MotionFrom::Velocity));
     let time = Unit::Time(slope);
@@ -218,13 +221,15 @@ fn scale(
         time.undo(&mut other);
         distance(&other, MotionFrom::Position)
     } else {
-        f64::MAX
+        (f64::MAX, true)
     };
     let looks = looks_like(slope);
-    let (right, nearest, wrong, effect, value) = if by_time + OTHER_TIME < by_position.min(by_velocity) {
+    let nearest = by_position.0.min(by_velocity.0);
+    let time_alone = !by_time.1 && by_position.1 && by_velocity.1 && by_time.0 < nearest;
+    let (right, nearest, wrong, effect, value) = if time_alone || by_time.0 + OTHER_TIME < nearest {
         checked.unit = Some(time);
         (MotionFrom::Position, "both", "the time column", "time_scale", slope)
-    } else if by_velocity < by_position {
+    } else if by_velocity.0 < by_position.0 {
         (MotionFrom::Velocity, velocity_name, position_name, "position_scale", 1.0 / slope)
     } else {
         (MotionFrom::Position, position_name, velocity_name, "velocity_scale", slope)

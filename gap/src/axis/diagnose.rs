@@ -3,9 +3,9 @@
 use gimbal_model_file::AxisModel;
 
 use super::balance::Balance;
-use super::columns::ColumnFault;
-use super::judge::{Found, Parameter, Ranked, Shrunk, judge};
-use super::library::rms;
+use super::columns::{Checked, ColumnFault};
+use super::judge::{Found, Judged, Parameter, Ranked, Shrunk, judge};
+use super::library::{NOMINAL, Shape, rms};
 use super::place::{AxisRegime, FrictionCurve, bands, friction_curve, regimes, spans, spectrum};
 use super::ready::ready;
 use super::search::Set;
@@ -72,15 +72,56 @@ pub struct AxisDiagnosis {
 
 /// A fit that leaves more than this of a log that it did not see is not what the axis has.
 const NOT_CARRIED: f64 = 0.6;
+/// Bands that are tried where noise hides effects: each is this share of the one before.
+const NARROWER: f64 = 0.6;
+const NARROWINGS: usize = 4;
+/// How far gains of a control law may be from the scale of its output's column to be one thing.
+const ONE_SCALE: f64 = 0.02;
+
+/// A log as it is looked at in one band.
+struct Looked {
+    log: AxisLog,
+    checked: Checked,
+    balance: Balance,
+    best: Set,
+    judged: Judged,
+}
+
+impl Looked {
+    fn new(log: AxisLog, model: &AxisModel) -> Self {
+        let (log, checked, motion) = ready(log, model);
+        let (balance, best) = Balance::searched(motion, model);
+        let judged = judge(&balance, &best, model);
+        Self { log, checked, balance, best, judged }
+    }
+
+    /// In the widest band that its noise allows; in a narrower one where effects explain it, no more of them, that noise hides
+    /// in the wide one.
+    fn closely(log: AxisLog, model: &AxisModel) -> Self {
+        let wide = Self::new(log.clone(), model);
+        let hidden = &wide.balance.hidden;
+        if model.band_hz.is_some() || wide.judged.verdict == Verdict::NoGap || hidden.is_empty() {
+            return wide;
+        }
+        let most = if wide.judged.verdict == Verdict::Unexplained { usize::MAX } else { wide.judged.found.len() };
+        let bands_hz = std::iter::successors(Some(NARROWER * wide.balance.motion.band_hz), |hz| Some(NARROWER * hz));
+        let narrow = |band_hz| Self::new(log.clone(), &AxisModel { band_hz: Some(band_hz), ..model.clone() });
+        let better = |narrow: &Self| narrow.judged.found.len() <= most && narrow.explains_by(hidden);
+        bands_hz.take(NARROWINGS).map(narrow).find(better).unwrap_or(wide)
+    }
+
+    /// Whether it is explained, and by one of these effects.
+    fn explains_by(&self, effects: &[&str]) -> bool {
+        let named = |found: &Found| effects.contains(&found.effect.as_str());
+        matches!(self.judged.verdict, Verdict::Explained | Verdict::CannotTell) && self.judged.found.iter().any(named)
+    }
+}
 
 /// Diagnoses a log against a model, and scores what it finds on logs that it does not fit.
 #[must_use]
 pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>) -> AxisDiagnosis {
-    let (log, checked, motion) = ready(log, model);
+    let Looked { log, checked, balance, best, mut judged } = Looked::closely(log, model);
     let mut notes = log.notes.clone();
-    let mut balance = Balance::new(motion, model);
-    let best = balance.search(model);
-    let mut judged = judge(&balance, &best, model);
     let unseen: Vec<Vec<Shrunk>> = unseen
         .into_iter()
         .map(|(name, log)| {
@@ -114,7 +155,8 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     let contribution: Vec<f64> = balance.target.iter().zip(&after).map(|(before, after)| before - after).collect();
     let mut found = judged.found;
     let mut verdict = judged.verdict;
-    found.extend(law.found);
+    let scale = found.iter().find(|found| found.effect == "torque_scale").map(|found| found.parameters[0].value);
+    found.extend(law.found.into_iter().filter(|own| !scale.is_some_and(|scale| of_one_scale(own, scale))));
     if !found.is_empty() && verdict == Verdict::NoGap {
         verdict = Verdict::Explained;
     }
@@ -171,6 +213,12 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
         lines,
         spectra: [spectrum(motion, &balance.target), spectrum(motion, &after)],
     }
+}
+
+/// Whether what is found in the control law is the scale of its output's column.
+fn of_one_scale(own: &Found, scale: f64) -> bool {
+    let change = own.parameters.iter().find(|parameter| parameter.name == "relative_change");
+    own.effect == "loop_gain" && change.is_some_and(|change| (change.value - scale).abs() < ONE_SCALE)
 }
 
 fn of_column(fault: &ColumnFault) -> Found {
@@ -234,9 +282,10 @@ fn detectable(balance: &Balance, best: &Set, after: &[f64]) -> Vec<(String, Opti
     let lag = 1 + 2 * super::balance::correlation(after);
     let variance = rms(after).powi(2).max(balance.motion.floor.powi(2)) * lag as f64;
     let mut sizes: Vec<(String, Option<f64>)> = Vec::new();
-    for candidate in &problem.candidates {
+    // sizes of one effect are in one unit
+    for candidate in problem.candidates.iter().filter(|candidate| candidate.shape != Shape::DragAsymmetry) {
         // a nominal parameter stands in the balance already, and is an effect beyond its tolerance
-        let base = super::library::NOMINAL.iter().position(|nominal| *nominal == candidate.shape);
+        let base = NOMINAL.iter().position(|nominal| *nominal == candidate.shape);
         let column = base.unwrap_or(candidate.columns[0]);
         let others: Vec<usize> = beside.iter().copied().filter(|other| !candidate.columns.contains(other)).collect();
         let kept = problem.grams.keeps(column, &others) * problem.grams.power(column);

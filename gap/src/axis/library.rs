@@ -19,7 +19,9 @@ pub(super) enum Shape {
     Coulomb,
     Scale,
     Constant,
+    /// Of friction that is one number, and of all of it.
     Asymmetry,
+    DragAsymmetry,
     Stribeck {
         rate: f64,
         exponent: f64,
@@ -99,7 +101,7 @@ impl Shape {
             Self::Coulomb => "friction_level",
             Self::Scale => "torque_scale",
             Self::Constant => "constant_torque",
-            Self::Asymmetry => "direction_asymmetry",
+            Self::Asymmetry | Self::DragAsymmetry => "direction_asymmetry",
             Self::Stribeck { .. } => "stribeck",
             Self::Presliding { .. } => "presliding",
             Self::Quadratic => "quadratic_drag",
@@ -133,6 +135,7 @@ impl Shape {
             Self::Viscous
             | Self::Coulomb
             | Self::Asymmetry
+            | Self::DragAsymmetry
             | Self::Stribeck { .. }
             | Self::Presliding { .. }
             | Self::Quadratic
@@ -166,9 +169,10 @@ impl Shape {
         self.block() == "friction" && !matches!(self, Self::Presliding { .. })
     }
 
-    /// Whether it stands for another effect, too: a spring has its neutral point, and so an offset.
+    /// Whether it stands for another effect, too: a spring has its neutral point, and so an offset; a scale has all nominal
+    /// parameters.
     pub(super) fn holds(&self, other: &Self) -> bool {
-        matches!((self, other), (Self::Spring, Self::Constant))
+        matches!((self, other), (Self::Spring, Self::Constant)) || *self == Self::Scale && NOMINAL.contains(other)
     }
 
     /// Share of the effort's power that it must take. What acts at reversals, or through the motion's higher derivatives, is
@@ -281,15 +285,16 @@ impl Shape {
             vec![by(&|i| carrier(i) * (k * m.q[i]).cos()), by(&|i| carrier(i) * (k * m.q[i]).sin())]
         };
         let warm = |time_s: f64, i: usize| 1.0 - (-m.time_s(i) / time_s).exp();
-        let (size, middle) = (m.size, m.middle);
+        let (size, middle, nominal) = (m.size, m.middle, m.nominal);
         match *self {
             Self::Inertia => vec![m.a.clone()],
             Self::Viscous => vec![m.v.clone()],
             Self::Coulomb => vec![m.s.clone()],
-            Self::Scale => vec![m.needed.clone()],
+            Self::Scale => vec![by(&|i| nominal[0] * m.a[i] + nominal[1] * m.v[i] + nominal[2] * m.s[i])],
             Self::Constant => vec![vec![1.0; m.q.len()]],
             // once it slips it is an offset; rows of rest, which would tell, are not in the balance
             Self::Asymmetry => vec![vec![1.0; m.q.len()]],
+            Self::DragAsymmetry => vec![by(&|i| (nominal[1] * m.v[i] + nominal[2] * m.s[i]).abs())],
             Self::Stribeck { rate, exponent } => {
                 vec![by(&|i| m.s[i] * (-(m.v[i].abs() / rate).powf(exponent)).exp())]
             }
@@ -330,6 +335,11 @@ impl Shape {
 
     /// The shapes on the grid of the balance.
     pub(super) fn on_grid(&self, m: &Motion) -> Vec<Vec<f64>> {
+        if *self == Self::Scale {
+            let own: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(m)).collect();
+            let sum = |row: usize| own.iter().zip(m.nominal).map(|(column, nominal)| nominal * column[row]).sum();
+            return vec![(0..m.rows.len()).map(sum).collect()];
+        }
         let smoothed = matches!(self, Self::Inertia | Self::Viscous | Self::Mode { .. });
         self.columns(m).iter().map(|column| if smoothed { m.smoothed(column) } else { m.raw(column) }).collect()
     }

@@ -18,6 +18,7 @@ mod noise;
 mod place;
 mod plain;
 mod ready;
+mod refine;
 mod regress;
 mod report;
 mod resonance;

@@ -56,6 +56,8 @@ pub(super) struct Motion {
     /// fitted, on any other too.
     pub(super) middle: f64,
     pub(super) size: f64,
+    /// Inertia, viscous and Coulomb friction of the model.
+    pub(super) nominal: [f64; 3],
     /// Effort that the parameters alone need: for effects that hang on the effort.
     pub(super) needed: Vec<f64>,
     pub(super) auxiliary: Vec<(String, Vec<f64>)>,
@@ -194,6 +196,7 @@ impl Motion {
             rotary: model.motion == Kind::Rotary,
             middle: q.iter().sum::<f64>() / q.len().max(1) as f64,
             size: 1.0,
+            nominal: [model.inertia, model.viscous, model.coulomb],
             needed: vec![0.0; v.len()],
             auxiliary: log.auxiliary.clone(),
             q,

@@ -28,29 +28,31 @@ pub(super) fn needed(motion: &Motion, parameters: [f64; 4]) -> Vec<f64> {
 /// The parameters of a motion by plain least squares, with a constant, and the root mean square of what they leave: a
 /// first look, and what effects of the effort hang on.
 pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
-    fitted(motion, &columns(motion), &motion.raw(&motion.effort))
+    fitted(motion, &columns(motion, &[]), &motion.raw(&motion.effort))
 }
 
-/// Columns of the nominal parameters and a constant.
-fn columns(motion: &Motion) -> Vec<Vec<f64>> {
+/// Columns of the nominal parameters, of a constant and of effects.
+fn columns(motion: &Motion, beside: &[Shape]) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
     columns.push(vec![1.0; motion.rows.len()]);
+    columns.extend(beside.iter().flat_map(|shape| shape.on_grid(motion)));
     columns
 }
 
 fn fitted(motion: &Motion, columns: &[Vec<f64>], effort: &[f64]) -> ([f64; 4], f64) {
     let grams = Grams::new(columns, effort, &motion.block);
-    let fit = grams.fit(&[0, 1, 2, 3]);
-    let rest = (grams.square_of_fit(&[0, 1, 2, 3]) / effort.len().max(1) as f64).sqrt();
+    let all: Vec<usize> = (0..columns.len()).collect();
+    let fit = grams.fit(&all);
+    let rest = (grams.square_of_fit(&all) / effort.len().max(1) as f64).sqrt();
     ([fit[0], fit[1], fit[2], fit[3]], rest)
 }
 
-/// The motion with the friction that comes up to its level at the rate that explains most, and how plain least squares
-/// explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than the least only
-/// where that leaves a good deal less.
-pub(super) fn rounded(mut motion: Motion) -> (Motion, [f64; 4], f64) {
-    let (mut columns, effort) = (columns(&motion), motion.raw(&motion.effort));
-    let (sharp, sharp_rest) = fitted(&motion, &columns, &effort);
+/// The motion with the friction that comes up to its level at the rate that explains most beside effects, and how plain
+/// least squares explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than
+/// the least only where that leaves a good deal less.
+pub(super) fn rounded(mut motion: Motion, beside: &[Shape]) -> (Motion, [f64; 4], f64) {
+    let effort = motion.raw(&motion.effort);
+    let (sharp, sharp_rest) = fitted(&motion, &columns(&motion, beside), &effort);
     let (quiet, widest) = (motion.quiet, WIDEST_ROUNDING * motion.fastest);
     if motion.stands {
         return (motion, sharp, sharp_rest);
@@ -59,8 +61,7 @@ pub(super) fn rounded(mut motion: Motion) -> (Motion, [f64; 4], f64) {
     let mut best = (quiet, sharp, ROUNDED * sharp_rest);
     for rate in rates.take_while(|rate| *rate < widest) {
         motion = motion.with_full_friction_at(rate);
-        columns[2] = Shape::Coulomb.on_grid(&motion).remove(0);
-        let (parameters, rest) = fitted(&motion, &columns, &effort);
+        let (parameters, rest) = fitted(&motion, &columns(&motion, beside), &effort);
         if rest < best.2 {
             best = (rate, parameters, rest);
         }

@@ -132,9 +132,11 @@ impl Problem {
         let mut level = f64::MAX;
         if let Some(nominal) = self.nominal {
             let total = |index: usize| {
-                let freed = |member: &&usize| self.candidates[**member].shape == NOMINAL[index];
-                let own = members.iter().find(freed).map_or(0.0, |&member| at(self.candidates[member].columns[0]));
-                nominal[index] + fit[index] + own
+                let of = |shape: &Shape| {
+                    let own = members.iter().find(|&&member| self.candidates[member].shape == *shape);
+                    own.map_or(0.0, |&member| at(self.candidates[member].columns[0]))
+                };
+                nominal[index] * (1.0 + of(&Shape::Scale)) + fit[index] + of(&NOMINAL[index])
             };
             // an effort that follows the rate with the sign of a drive is the loop's own law, not friction
             if (0..3).any(|index| total(index) < 0.0) {
@@ -255,7 +257,8 @@ impl Problem {
     /// apart, the offset.
     fn key(&self, set: &Set) -> f64 {
         let priced = self.price() * self.effects(&set.members) as f64;
-        let asymmetric = set.members.iter().any(|&member| self.candidates[member].shape == Shape::Asymmetry);
+        let asymmetry = |shape: &Shape| matches!(shape, Shape::Asymmetry | Shape::DragAsymmetry);
+        let asymmetric = set.members.iter().any(|&member| asymmetry(&self.candidates[member].shape));
         priced + set.square() * if asymmetric { ASYMMETRIC } else { 1.0 }
     }
 

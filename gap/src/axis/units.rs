@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use gimbal_model_file::AxisModel;
 
 use super::motion::{Motion, MotionFrom, NARROW};
-use super::plain::{nominal, plain};
+use super::plain::{nominal, nominal_rest, plain};
 use super::table::AxisLog;
 
 /// A factor is a known one within this.
@@ -13,6 +13,9 @@ const SAME: f64 = 0.02;
 /// Factors of units that are taken for one another, and how far one may be off them (its logarithm).
 const UNITS: [f64; 8] = [1e3, 1e-3, TAU, 1.0 / TAU, 180.0 / PI, PI / 180.0, 100.0, 0.01];
 const ALIKE: f64 = 0.35;
+/// What the nominal model may leave of a log taken in another unit, over what it leaves of it as it is: parameters by plain
+/// regression are what noise and loop make of them where the effort hardly hangs on the motion.
+const MENDED: f64 = 0.7;
 
 /// What is in another unit, and its values over what they should be.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +32,7 @@ pub(super) struct OtherUnit {
 }
 
 /// Position or time in another unit than the model file says: inertia and viscous friction are off as their powers of it
-/// have it, and Coulomb friction is not.
+/// have it, Coulomb friction is not, and the nominal model leaves less of the log in that unit.
 ///
 /// ```text
 /// position times k: J / k, B / k        time times k: J k^2, B k
@@ -41,7 +44,8 @@ pub(super) fn other_unit(
     effort_sign: f64,
 ) -> Option<OtherUnit> {
     let from = from?;
-    let (found, _) = plain(&Motion::new(log, model, from, effort_sign, NARROW));
+    let motion = Motion::new(log, model, from, effort_sign, NARROW);
+    let (found, _) = plain(&motion);
     let [inertia, viscous, coulomb] = std::array::from_fn(|place| found[place] / nominal(model)[place]);
     let off = |ratio: f64, by: f64| (ratio.abs() / by).ln().abs() > ALIKE;
     let told = inertia > 0.0 && viscous > 0.0 && off(inertia, 1.0) && !off(coulomb, 1.0);
@@ -59,6 +63,12 @@ pub(super) fn other_unit(
         }
         _ => return None,
     };
+    let mut mended = log.clone();
+    unit.undo(&mut mended);
+    let left = |motion: &Motion| nominal_rest(motion, model);
+    if left(&Motion::new(&mended, model, from, effort_sign, NARROW)) > MENDED * left(&motion) {
+        return None;
+    }
     let words = format!(
         "inertia is {inertia:.3e} and viscous friction {viscous:.3e} times the model's, Coulomb friction is not: {of} in \
          another unit than [axis.columns] says, {:.4e} of it ({}); taken in that unit",

@@ -40,7 +40,7 @@ pub(crate) use refine::{is_idle, linearised, stand, standard_errors};
 pub(crate) use refit::rebase;
 pub use refit::{refit, without};
 pub use search::{Glimpse, Search, Set, null, search};
-pub(crate) use search::{ended, look};
+pub(crate) use search::{ended, glimpses_beside, look};
 pub(crate) use signals::{difference, of_channel, predicted, residual as raw_residual};
 pub(crate) use tried::Tried;
 pub use whiten::Whitener;

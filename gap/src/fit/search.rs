@@ -41,12 +41,12 @@ impl Search {
     }
 }
 
-/// What an effect would add to the nominal parameters, without a fit.
+/// What an effect would add, without a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Glimpse {
     /// Its candidate.
     pub index: usize,
-    /// Linear evidence over the nominal parameters [nats].
+    /// Linear evidence over what it is added to [nats].
     pub gain: f64,
 }
 
@@ -107,8 +107,7 @@ impl Looked {
         without_idle(problem, &null, &mut fits);
         let (null, moved) = from_there(problem, null, &fits);
         // what single effects seemed to bring may have been the way that the nominal parameters found meanwhile
-        let glimpses =
-            if moved { seen(&best_by_effect(problem, extensions(problem, &null), usize::MAX)) } else { glimpses };
+        let glimpses = if moved { glimpses_beside(problem, &null) } else { glimpses };
         Search { null, fits, glimpses }
     }
 }
@@ -182,6 +181,11 @@ fn from_there(problem: &Problem, null: Fit, fits: &[Fit]) -> (Fit, bool) {
     let further = again.volume.is_finite() && cost(&again) < cost(&null);
     let moved = further && cost(&null) - cost(&again) > 1.0;
     (if further { again } else { null }, moved)
+}
+
+/// What every effect that a fit does not have would add to it.
+pub(crate) fn glimpses_beside(problem: &Problem, fit: &Fit) -> Vec<Glimpse> {
+    seen(&best_by_effect(problem, extensions(problem, fit), usize::MAX))
 }
 
 fn seen(extensions: &[Extension]) -> Vec<Glimpse> {

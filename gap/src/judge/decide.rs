@@ -7,7 +7,7 @@ use super::left_over::left_over;
 use super::probability::{Probabilities, SetProbability};
 use super::samples::{pickoff_step, stop_change};
 use super::strange::{Stranger, strangers};
-use super::weigh::{Weighed, best, caution, holds, moves_freely, weigh};
+use super::weigh::{Weighed, best, caution, hidden_beside, holds, moves_freely, weigh};
 use crate::fit::{Fit, Problem, Search};
 
 /// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be
@@ -192,10 +192,12 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let step = pickoff_step(problem, fit);
     let stepped = sure && unknown > UNEXPLAINED[1] && step.is_some() && after < ROUGH;
     let unknown = if stepped { SHOWN } else { unknown };
+    let hidden = best.map_or_else(Vec::new, |best| hidden_beside(problem, search, &sets, best));
+    let told = [&sets[..], &hidden].concat();
     let mut decision = Decision {
         verdict: Verdict::NoGap,
         found: Vec::new(),
-        ranking: probabilities.ranking(&sets, 1.0 - unknown),
+        ranking: Probabilities::new(&told).ranking(&told, 1.0 - unknown),
         alternatives: Vec::new(),
         unknown_probability: unknown,
         chosen,

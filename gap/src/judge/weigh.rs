@@ -4,7 +4,7 @@ use gimbal_model_file::Tolerance;
 use gimbal_plant::{Bound, Effect, Parameter};
 
 use super::stretch::carried_alone;
-use crate::fit::{Fit, Problem, Search};
+use crate::fit::{Fit, Glimpse, Problem, Search, glimpses_beside};
 use crate::library::{NAMED, releases};
 
 /// Evidence that a nominal parameter beyond its tolerance must bring to be named [nats].
@@ -46,6 +46,8 @@ const EXACT: [&str; 15] = [
 ];
 /// What an effect must take away to be there when its size is not known to be more than zero [nats].
 pub(crate) const HELPS: f64 = 12.0;
+/// What an effect that was not worth a fit brings at most [nats].
+const HIDDEN: f64 = 3.0;
 /// What rules a set out [nats].
 pub(crate) const NEVER: f64 = 1e3;
 
@@ -97,6 +99,23 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         }
     }
     all
+}
+
+/// A set with each effect more that was not worth a fit beside it: one may hide there as well as where nothing is named, and
+/// as seldom.
+pub(crate) fn hidden_beside(problem: &Problem, search: &Search, sets: &[Weighed], best: &Weighed) -> Vec<Weighed> {
+    let Some(fit) = best.fit.map(|index| &search.fits[index]) else { return Vec::new() };
+    let temper = search.temper(problem);
+    let with = |glimpse: Glimpse| {
+        let mut effects = best.effects.clone();
+        effects.push(problem.candidates[glimpse.index].effect);
+        effects.sort_unstable();
+        let (cost, rare) = costs(problem, &[glimpse.index]);
+        let nats = best.nats + (glimpse.gain / temper).min(HIDDEN);
+        Weighed { effects, fit: None, nats, cost: best.cost + cost, rare: best.rare + rare }
+    };
+    let all = glimpses_beside(problem, fit).into_iter().map(with);
+    all.filter(|set| !sets.iter().any(|other| other.effects == set.effects)).collect()
 }
 
 /// Of fits of the same effects, which began elsewhere and stand still elsewhere, the one that is worth most.

@@ -22,7 +22,9 @@ pub(crate) struct Truth {
     pub(crate) stribeck_rate: f64,
     /// Displacement over which friction builds up.
     pub(crate) bristle: f64,
+    /// Of Coulomb and of viscous friction.
     pub(crate) asymmetry: f64,
+    pub(crate) viscous_asymmetry: f64,
     pub(crate) drag: f64,
     /// Friction falls by this share with the time constant given.
     pub(crate) warming: (f64, f64),
@@ -55,6 +57,7 @@ impl Truth {
             stribeck_rate: 0.01,
             bristle: 2e-6,
             asymmetry: 0.0,
+            viscous_asymmetry: 0.0,
             drag: 0.0,
             warming: (0.0, 5.0),
             constant: 0.0,
@@ -155,7 +158,8 @@ pub(crate) fn log(truth: &Truth, path: Path, length_s: f64, seed: u64) -> String
             let stiffness = truth.coulomb / truth.bristle;
             // bristles are stiff: implicit step of z
             z = (z + step * v) / (1.0 + step * stiffness * v.abs() / level);
-            let force = stiffness * z + truth.viscous * v + truth.drag * v * v.abs();
+            let viscous = truth.viscous * (1.0 + truth.viscous_asymmetry * v.signum());
+            let force = stiffness * z + viscous * v + truth.drag * v * v.abs();
             let acceleration = (gain * effort
                 - force
                 - ripple

@@ -10,28 +10,17 @@ use crate::axis::plain::nominal;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(in crate::axis) const BEYOND: f64 = 1.15;
 
-/// Nominal parameters beyond what is known of them; all of them by one factor are one effect.
-pub(super) fn beyond(balance: &Balance, model: &AxisModel, shifts: [f64; 3], errors: [f64; 3]) -> Vec<Shape> {
-    let base = nominal(model);
+/// Nominal parameters beyond what is known of them, by their places.
+pub(super) fn beyond(
+    balance: &Balance,
+    model: &AxisModel,
+    shifts: [f64; 3],
+    errors: [f64; 3],
+) -> impl Iterator<Item = usize> {
     // and worth the price of an effect
     let grams = &balance.problem.grams;
-    let worth = |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
-    let outside: Vec<usize> =
-        (0..3).filter(|&index| worth(index) && !within(model, index, shifts[index], errors[index])).collect();
-    let known: Vec<usize> = (0..3).filter(|&index| base[index] > 0.0).collect();
-    if outside.len() > 1 && outside.iter().all(|index| known.contains(index)) && !model.trusts("torque_scale") {
-        let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
-        let factors: Vec<(f64, f64)> = known
-            .iter()
-            .map(|&i| (shifts[i] / base[i], tolerance[i].powi(2) + (2.0 * errors[i] / base[i]).powi(2)))
-            .collect();
-        let weight: f64 = factors.iter().map(|(_, variance)| 1.0 / variance).sum();
-        let mean = factors.iter().map(|(factor, variance)| factor / variance).sum::<f64>() / weight;
-        if factors.iter().all(|(factor, variance)| ((1.0 + factor) / (1.0 + mean) - 1.0).powi(2) < 2.0 * variance) {
-            return vec![Shape::Scale];
-        }
-    }
-    outside.into_iter().map(|index| NOMINAL[index].clone()).collect()
+    let worth = move |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
+    (0..3).filter(move |&index| worth(index) && !within(model, index, shifts[index], errors[index]))
 }
 
 /// Names of a set's effects, each once.
@@ -42,7 +31,7 @@ pub(super) fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> 
     let mut names: Vec<String> = shapes
         .filter(|shape| !NOMINAL.contains(shape))
         .map(|shape| label(shape, &balance.motion))
-        .chain(beyond(balance, model, shifts, balance.of_noise()).iter().map(|shape| shape.effect().to_owned()))
+        .chain(beyond(balance, model, shifts, balance.of_noise()).map(|index| NOMINAL[index].effect().to_owned()))
         .collect();
     names.sort();
     names.dedup();

@@ -6,7 +6,6 @@ use super::beyond::{beyond, label};
 use super::{Found, Parameter, Ranked, deviation, parameters};
 use crate::axis::balance::Balance;
 use crate::axis::library::{NOMINAL, Shape};
-use crate::axis::plain::nominal;
 use crate::axis::regress::Draws;
 use crate::axis::search::Set;
 
@@ -61,20 +60,9 @@ impl<'a> Fitted<'a> {
         squares(balance, &own)
     }
 
-    /// The same of shifts of nominal parameters.
-    fn shift_power(&self, balance: &Balance, indices: &[usize]) -> f64 {
-        let own: Vec<(&[f64], f64)> =
-            indices.iter().map(|&index| (&balance.columns[index][..], self.shifts[index])).collect();
-        squares(balance, &own)
-    }
-
-    /// Relative change of all known nominal parameters by one factor, of shifts, by the errors that they have.
-    fn one_factor(&self, model: &AxisModel) -> impl Fn(&[f64]) -> f64 + use<> {
-        let (base, errors) = (nominal(model), self.errors());
-        let known: Vec<usize> = (0..3).filter(|&index| base[index] > 0.0).collect();
-        let weight = move |index: usize| (base[index] / errors[index].max(1e-6 * base[index])).powi(2);
-        let weights: f64 = known.iter().map(|&index| weight(index)).sum();
-        move |shifts| known.iter().map(|&index| weight(index) * shifts[index] / base[index]).sum::<f64>() / weights
+    /// The same of the shift of a nominal parameter.
+    fn shift_power(&self, balance: &Balance, index: usize) -> f64 {
+        squares(balance, &[(&balance.columns[index][..], self.shifts[index])])
     }
 }
 
@@ -82,11 +70,6 @@ impl<'a> Fitted<'a> {
 fn squares(balance: &Balance, own: &[(&[f64], f64)]) -> f64 {
     let at = |row: usize| own.iter().map(|(column, amplitude)| amplitude * column[row]).sum::<f64>();
     (0..balance.target.len()).map(|row| at(row).powi(2)).sum()
-}
-
-/// Nominal parameters that a shape stands for.
-fn indices(shape: &Shape) -> Vec<usize> {
-    NOMINAL.iter().position(|nominal| nominal == shape).map_or_else(|| (0..3).collect(), |index| vec![index])
 }
 
 /// The effects of a set that closes so much of the gap, the one that takes most first; what frees a nominal parameter is
@@ -112,13 +95,11 @@ pub(super) fn found(
             (shape.clone(), label(shape, &balance.motion), fitted.power(balance, member), told)
         })
         .collect();
-    let shifted = beyond(balance, model, fitted.shifts, unsure).into_iter().map(|shape| {
-        let own = indices(&shape);
-        let factor = fitted.one_factor(model);
-        let of = |shifts: &[f64]| if let [index] = own[..] { vec![shifts[index]] } else { vec![factor(shifts)] };
-        let samples: Vec<Vec<f64>> = fitted.shifted.iter().map(|shifts| of(shifts)).collect();
-        let told = parameters(&shape, &of(&fitted.shifts), &samples, model, &balance.motion);
-        let (effect, power) = (shape.effect().to_owned(), fitted.shift_power(balance, &own));
+    let shifted = beyond(balance, model, fitted.shifts, unsure).map(|index| {
+        let shape = NOMINAL[index].clone();
+        let samples: Vec<Vec<f64>> = fitted.shifted.iter().map(|shifts| vec![shifts[index]]).collect();
+        let told = parameters(&shape, &[fitted.shifts[index]], &samples, model, &balance.motion);
+        let (effect, power) = (shape.effect().to_owned(), fitted.shift_power(balance, index));
         (shape, effect, power, told)
     });
     let all: Vec<(Shape, String, f64, Vec<Parameter>)> = added.into_iter().chain(shifted).collect();
@@ -136,7 +117,8 @@ pub(super) fn found(
         removes: (own / power * gone).clamp(0.0, 1.0),
         shows_in: "effort",
     };
-    let mut found: Vec<Found> = all.into_iter().map(one).collect();
+    // what no likely set holds is not told
+    let mut found: Vec<Found> = all.into_iter().map(one).filter(|found| found.probability > 0.0).collect();
     found.sort_by(|a, b| b.removes.total_cmp(&a.removes));
     found
 }

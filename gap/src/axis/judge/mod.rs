@@ -38,7 +38,7 @@ const HALF_UNKNOWN: f64 = 0.5;
 const TRIFLE: f64 = 0.01;
 /// Least probability of a set that is not told apart, over that of the set named.
 const RIVAL: f64 = 0.1;
-/// A gap is one from this power over the floor on.
+/// What is left is more than noise from this power over it on.
 const NOTABLE: f64 = 1.5;
 /// What is left by nothing that is named is no noise from this many times that and this share of the effort on; nor is it
 /// where a run of blocks has this many times the power of the middle one and of noise, and the middle one's share of the effort.
@@ -153,7 +153,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let ranking = if balance.dead_zone_is_friction { or_dead_zone(ranking) } else { ranking };
     let found = found(balance, &fitted, model, &ranking, shrunk.reduction_percent);
     let alternatives = alternatives(&ranking, &names(balance, &best.members, model), &found);
-    let gap = (shrunk.before / shrunk.noise_floor.max(1e-300)).powi(2) > NOTABLE;
+    let gap = balance.has_gap();
     let rest = Rest::of(&shrunk);
     let verdict = if found.is_empty() {
         let effort = balance.motion.pick(&balance.motion.effort);

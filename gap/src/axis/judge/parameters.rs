@@ -83,7 +83,7 @@ pub(in crate::axis) fn parameters(
             let known = (1.0 + own[0]) * common_tolerance(model);
             vec![new("relative", own[0], deviation(samples, 0).hypot(known), one())]
         }
-        Shape::LoadDependence => vec![amplitude("relative", one())],
+        Shape::LoadDependence | Shape::DragAsymmetry => vec![amplitude("relative", one())],
         Shape::InertialLoad => {
             let inertia = nominal(model)[0];
             vec![new("relative", own[0] / inertia, deviation(samples, 0) / inertia, one())]

@@ -1,0 +1,86 @@
+//! Shape parameters where the fit is best: between those that were tried.
+
+use super::balance::Balance;
+use super::library::Shape;
+use super::regress::Grams;
+use super::search::Candidate;
+
+/// Play of a hysteresis at most, over the travel.
+const WIDEST_PLAY: f64 = 0.5;
+/// What a number of waves that is not whole must leave of a turning axis, over what the nearest whole one does.
+const BEHIND_A_GEAR: f64 = 0.9;
+/// Frequencies of a mode, about that of the scan, among which the best one is.
+const MODE_SPAN: f64 = 1.08;
+
+impl Balance {
+    /// Moves the shape parameters of the members to where the fit is best, and adds those shapes to the library.
+    pub(super) fn refine(&mut self, members: &[usize]) {
+        let mut added = false;
+        for &member in members {
+            let shape = self.problem.candidates[member].shape.clone();
+            let Some(&(name, value)) = shape.numbers().first() else { continue };
+            let others: Vec<usize> = members.iter().copied().filter(|other| *other != member).collect();
+            let rest: Vec<usize> = self.problem.columns(&others);
+            let span =
+                if name == "wave_number" { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
+            let (from, to) = match &shape {
+                Shape::ViscousCurve { .. } => (0.45, 0.85),
+                // a resonance has one peak no further than its neighbours in the scan
+                Shape::Mode { .. } => (value / MODE_SPAN, value * MODE_SPAN),
+                // wider than that it is a spring
+                Shape::Hysteresis { .. } => (value / span, (value * span).min(WIDEST_PLAY * self.motion.travel)),
+                _ => (value / span, value * span),
+            };
+            let cost = |number: f64| {
+                let grid = shape.with(number).on_grid(&self.motion);
+                let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
+                columns.extend(grid);
+                let mut grams = Grams::new(&columns, &self.target, &self.motion.block);
+                for (place, &column) in rest.iter().enumerate() {
+                    grams.precision[place] = self.problem.grams.precision[column];
+                }
+                grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
+            };
+            let best = golden(from, to, cost);
+            // a turn has a whole number of waves, but of what turns behind a gear
+            if name == "wave_number" && self.motion.rotary && cost(best) > BEHIND_A_GEAR * cost(value) {
+                continue;
+            }
+            let shape = shape.with(best);
+            let start = self.columns.len();
+            self.columns.extend(shape.on_grid(&self.motion));
+            for column in &self.columns[start..] {
+                let friction = shape.brakes();
+                let along = if friction { self.problem.slip.along(column) } else { Vec::new() };
+                self.problem.slip.columns.push(along);
+            }
+            self.problem.candidates.push(Candidate { shape, columns: (start..self.columns.len()).collect() });
+            added = true;
+        }
+        if added {
+            let precision = self.problem.grams.precision.clone();
+            self.problem.grams = Grams::new(&self.columns, &self.target, &self.motion.block);
+            self.problem.grams.precision[..precision.len()].copy_from_slice(&precision);
+        }
+    }
+}
+
+/// Smallest value of a function of a logarithm, by golden section.
+fn golden(from: f64, to: f64, cost: impl Fn(f64) -> f64) -> f64 {
+    let ratio = 0.618_034;
+    let (mut low, mut high) = (from.ln(), to.ln());
+    let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
+    let (mut at_a, mut at_b) = (cost(a.exp()), cost(b.exp()));
+    for _ in 0..7 {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - ratio * (high - low);
+            at_a = cost(a.exp());
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + ratio * (high - low);
+            at_b = cost(b.exp());
+        }
+    }
+    if at_a < at_b { a.exp() } else { b.exp() }
+}
