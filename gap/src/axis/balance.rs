@@ -50,8 +50,10 @@ impl Balance {
     pub(super) fn searched(motion: Motion, model: &AxisModel) -> (Self, Set) {
         let mut balance = Self::new(motion.clone(), model, &[]);
         let set = balance.search(model);
-        let found: Vec<Shape> =
-            set.members.iter().map(|&member| balance.problem.candidates[member].shape.clone()).collect();
+        // plain least squares have the nominal parameters already
+        let added = |shape: &&Shape| **shape != Shape::Scale && !NOMINAL.contains(shape);
+        let shapes = set.members.iter().map(|&member| &balance.problem.candidates[member].shape);
+        let found: Vec<Shape> = shapes.filter(added).cloned().collect();
         if found.is_empty() || rounded(motion.clone(), &found).0.full_at.to_bits() == balance.motion.full_at.to_bits() {
             return (balance, set);
         }
