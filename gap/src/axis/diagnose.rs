@@ -183,6 +183,7 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     words.extend(law.words);
     shrunk.extend(unseen.into_iter().flatten());
     notes.extend(remarks(&found, model, &balance));
+    notes.extend(offset_instead(&balance, &best, model));
     let lines = Lines {
         time_s: motion.rows.iter().map(|&row| log.first_s + motion.time_s(row)).collect(),
         effort: balance.effort.clone(),
@@ -273,6 +274,23 @@ fn remarks(found: &[Found], model: &AxisModel, balance: &Balance) -> Vec<String>
         notes.push(format!("this log cannot show: {}", balance.hidden.join(", ")));
     }
     notes
+}
+
+/// What an offset would leave in the place of friction that is larger one way: at one speed they are one.
+fn offset_instead(balance: &Balance, best: &Set, model: &AxisModel) -> Option<String> {
+    let candidates = &balance.problem.candidates;
+    let place = best.members.iter().position(|&member| candidates[member].shape == Shape::DragAsymmetry)?;
+    let mut members = best.members.clone();
+    members[place] = candidates.iter().position(|candidate| candidate.shape == Shape::Constant)?;
+    let (columns, amplitudes) = balance.fit(&members);
+    let offset = columns.iter().position(|column| *column == candidates[members[place]].columns[0])?;
+    Some(format!(
+        "constant_torque of {:.3e} {unit} in the place of direction_asymmetry would leave {:.3e} {unit} rms, not {:.3e}",
+        amplitudes[offset],
+        rms(&balance.residual(&members)),
+        rms(&balance.residual(&best.members)),
+        unit = model.effort_unit
+    ))
 }
 
 /// Smallest amplitude of each kind that would have been seen.
