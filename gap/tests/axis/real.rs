@@ -28,11 +28,15 @@ fn first<'a>(diagnosis: &'a AxisDiagnosis, effect: &str) -> Option<&'a gimbal_ga
 }
 
 #[test]
-fn cross_emps_lacks_coulomb_friction_and_an_offset_and_keeps_them_on_the_official_test() {
+fn cross_emps_lacks_coulomb_friction_and_an_asymmetry_and_keeps_them_on_the_official_test() {
     let Some(diagnosis) = diagnosed("emps.toml", "emps/train.csv", &["emps/test_pulses.csv"]) else { return };
     assert!(first(&diagnosis, "friction_level").is_some(), "{}", text(&diagnosis));
+    // plain least squares with an offset and abs(v), by another program: -38.5 of 204 N s/m here, -38.9 in the test; no offset
+    let asymmetry = first(&diagnosis, "direction_asymmetry").expect("named").parameters[0].value;
+    assert!((asymmetry / -0.19 - 1.0).abs() < 0.1, "{}", text(&diagnosis));
+    assert!(diagnosis.notes.iter().any(|note| note.starts_with("constant_torque of -3.")), "{}", text(&diagnosis));
     let unseen = diagnosis.shrunk.iter().find(|s| s.name.contains("test_pulses")).expect("scored");
-    assert!(unseen.ci95_percent[0] > 90.0, "{}", text(&diagnosis));
+    assert!(unseen.ci95_percent[0] > 98.5, "{}", text(&diagnosis));
 }
 
 #[test]
