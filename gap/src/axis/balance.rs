@@ -20,10 +20,10 @@ const STEADY: f64 = 0.97;
 /// A column must keep this share of its power beside the nominal parameters, and this much through the band.
 const LEAST_KEPT: f64 = 1e-4;
 const LEAST_PASSED: f64 = 0.02;
-/// A gap is one from this power over that of noise on.
-const NOTABLE: f64 = 1.5;
 /// And no more than this share of its deviation may be noise of the motion.
 const MOST_NOISE: f64 = 0.4;
+/// A gap is one from this power over that of noise on.
+const NOTABLE: f64 = 1.5;
 
 /// One log's balance.
 #[derive(Debug)]

@@ -149,11 +149,7 @@ fn cross_a_wrong_unit_is_told_and_undone() {
 fn cross_a_time_a_little_off_is_told_by_the_parameters_that_it_alone_makes_right() {
     // 8 %: the inertia of a wrong position would be 8 % off, of a wrong rate 17 %, where 3 % are known
     let logged = log(&Truth::nominal(), Path::Sines, 24.0, 5);
-    let mut slow = String::from("t,x,v,f,code\n");
-    for line in logged.lines().skip(1) {
-        let (time, rest) = line.split_once(',').expect("five cells");
-        slow.push_str(&format!("{:.6},{rest}\n", 1.08 * time.parse::<f64>().expect("a number")));
-    }
+    let slow = with_cells(&logged, 0, |time| format!("{:.6}", 1.08 * time));
     let diagnosis = diagnose(read(&slow), &model(), Vec::new());
     assert_eq!(names(&diagnosis), ["time_scale"], "{}", text(&diagnosis));
     assert!((value(&diagnosis, "time_scale") / 1.08 - 1.0).abs() < 0.01, "{}", text(&diagnosis));
@@ -171,12 +167,7 @@ fn cross_friction_that_is_larger_one_way_at_all_rates_is_an_asymmetry() {
 fn cross_a_scale_of_the_effort_is_told_once() {
     // the law's gains are off by the same factor, as its output is that column
     let logged = with_reference(&log(&Truth::nominal(), Path::Sines, 24.0, 5), |_| 0.0);
-    let mut scaled = String::from("t,x,v,f,code,r\n");
-    for line in logged.lines().skip(1) {
-        let mut cells: Vec<String> = line.split(',').map(String::from).collect();
-        cells[3] = format!("{:.6}", 0.88 * cells[3].parse::<f64>().expect("a number"));
-        scaled.push_str(&(cells.join(",") + "\n"));
-    }
+    let scaled = with_cells(&logged, 3, |effort| format!("{:.6}", 0.88 * effort));
     let model = with_law(39_000.0, 960.0);
     let read = AxisLog::read(scaled.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
     let diagnosis = diagnose(read, &model, Vec::new());
@@ -228,21 +219,23 @@ fn cross_a_lag_that_noise_hides_in_the_wide_band_is_told_in_a_narrower_one() {
 #[test]
 fn cross_a_coarse_encoder_is_no_wrong_scale() {
     // a step is 0.2 m/s from row to row, as much as the axis moves in one
-    let logged = coarse(&log(&Truth::nominal(), Path::Sines, 24.0, 5), 2e-4);
-    let diagnosis = diagnose(read(&logged), &model(), Vec::new());
+    let step = 2e-4;
+    let logged = log(&Truth::nominal(), Path::Sines, 24.0, 5);
+    let coarse = with_cells(&logged, 1, |position| format!("{:.9}", step * (position / step).round()));
+    let diagnosis = diagnose(read(&coarse), &model(), Vec::new());
     assert!(!names(&diagnosis).iter().any(|name| name.ends_with("_scale")), "{}", text(&diagnosis));
 }
 
-/// The log with positions in whole steps.
-fn coarse(logged: &str, step: f64) -> String {
-    let mut coarse = String::from("t,x,v,f,code\n");
-    for line in logged.lines().skip(1) {
+/// The log with what a column's values become.
+fn with_cells(logged: &str, column: usize, becomes: impl Fn(f64) -> String) -> String {
+    let (head, rows) = logged.split_once('\n').expect("a head");
+    let mut out = format!("{head}\n");
+    for line in rows.lines() {
         let mut cells: Vec<String> = line.split(',').map(String::from).collect();
-        let position: f64 = cells[1].parse().expect("a number");
-        cells[1] = format!("{:.9}", step * (position / step).round());
-        coarse.push_str(&(cells.join(",") + "\n"));
+        cells[column] = becomes(cells[column].parse().expect("a number"));
+        out.push_str(&(cells.join(",") + "\n"));
     }
-    coarse
+    out
 }
 
 #[test]
