@@ -17,6 +17,10 @@ use crate::touch::touched;
 /// No fit that leaves more than this of the noise comes near a log.
 const ASTRAY: f64 = 1.5;
 
+/// Rows in which a beginning that is not the platform's shows most, and how far beyond chance [s], [standard deviations].
+const FIRST_S: f64 = 0.1;
+const FIRST_STANDS_OUT: f64 = 6.0;
+
 /// A residual this many times the white noise of every sensor is no noise, however slow.
 const NO_NOISE: f64 = 25.0;
 /// The same where the effects named take nothing away.
@@ -122,12 +126,21 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let part = if read.comes_near_a_stop() {
         astray(&whole).then(|| read.away_from_stop(bearing)).flatten()
     } else {
-        (astray(&whole) && begins_wrong(&whole)).then(|| read.after_its_beginning(bearing)).flatten()
+        begins_wrong(&whole).then(|| read.after_its_beginning(bearing)).flatten()
     };
+    let mut in_part = part.is_some();
     let Settled { mut problem, mut search, known } = match &part {
         Some(part) => {
+            let left = left_of(&whole);
             drop(whole);
-            settled(part, model)
+            let own = settled(part, model);
+            in_part = left_of(&own) < left;
+            if in_part {
+                own
+            } else {
+                drop(own);
+                settled(&read, model)
+            }
         }
         None => whole,
     };
@@ -210,7 +223,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let not_looked_for = std::mem::take(&mut problem.not_looked_for);
     drop(problem);
     Diagnosis {
-        record: part.unwrap_or(read),
+        record: part.filter(|_| in_part).unwrap_or(read),
         decision: Some(decision),
         blocks,
         bands,
@@ -234,18 +247,34 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
 }
 
 /// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.
-fn astray(Settled { problem, search, .. }: &Settled) -> bool {
-    search.closest().square > ASTRAY * problem.whitener.count() as f64
+fn astray(settled: &Settled) -> bool {
+    left_of(settled) > ASTRAY
 }
 
-/// Whether most of what its closest fit leaves beyond the noise is left at its beginning.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-fn begins_wrong(Settled { problem, search, .. }: &Settled) -> bool {
+/// What the closest fit leaves of the noise.
+fn left_of(Settled { problem, search, .. }: &Settled) -> f64 {
+    search.closest().square / problem.whitener.count().max(1) as f64
+}
+
+/// Whether its first rows stand out of what the closest fit leaves: from where the log shows the platform to begin, no
+/// prediction gets to where it was.
+fn begins_wrong(whole @ Settled { problem, search, .. }: &Settled) -> bool {
     let closest = search.closest();
-    let values = (BEGINNING_S / problem.record.inputs.period_s) as usize * problem.record.channels.len();
-    let first: f64 = closest.residual.iter().take(values).map(|value| value * value).sum();
-    let excess = closest.square - problem.whitener.count() as f64;
-    first - values as f64 > 0.5 * excess
+    let square_of = |length_s: f64| {
+        let values = rows(problem.record, length_s) * problem.record.channels.len();
+        (closest.residual.iter().take(values).map(|value| value * value).sum::<f64>(), values as f64)
+    };
+    let (first, values) = square_of(FIRST_S);
+    let count = problem.whitener.count() as f64;
+    let elsewhere = (closest.square - first) / (count - values).max(1.0);
+    let stands_out = (first / elsewhere - values) / (2.0 * values).sqrt() > FIRST_STANDS_OUT;
+    let (first, values) = square_of(BEGINNING_S);
+    stands_out || astray(whole) && first - values > 0.5 * (closest.square - count)
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+fn rows(record: &Record, length_s: f64) -> usize {
+    (length_s / record.inputs.period_s) as usize
 }
 
 /// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.

@@ -34,7 +34,7 @@ pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> 
         let mut beaten = on.may_be_beaten_by(looked.closest());
         // pairs are for a noise that no single effect stays below
         if !beaten {
-            looked = looked.widened(&on.problem);
+            looked = looked.widened(&mut on.problem);
             beaten = on.may_be_beaten_by(looked.closest());
         }
         let best = if beaten {
@@ -86,7 +86,7 @@ impl<'a> Measured<'a> {
         let mut best = on.nominal.clone();
         if is_near(&on.problem, &best) && best.is_strained(&on.problem) {
             rebase(&mut on.problem, &best);
-            best = look(&on.problem, best, None).widened(&on.problem).closest().clone();
+            best = look(&on.problem, best, None).widened(&mut on.problem).closest().clone();
             best = ended(&mut on.problem, best);
         }
         on.again(&best)

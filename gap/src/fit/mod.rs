@@ -7,6 +7,7 @@ mod gross;
 mod ground;
 mod heavy;
 mod hypothesis;
+mod less;
 mod linear;
 mod normal;
 mod path;

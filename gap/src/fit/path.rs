@@ -20,6 +20,7 @@
 
 use realfft::num_complex::Complex;
 
+use super::power::INPUTS_CORNER_HZ;
 use super::signals::{Signals, of_channel};
 use super::whiten::Whitener;
 
@@ -92,8 +93,9 @@ impl Path {
             for (earlier, other) in driven[..place].iter().enumerate() {
                 for line in 1..one.len().min(count + 1) {
                     let product = one[line] * other[line].conj();
-                    sum +=
-                        product.re - known * self.lines[place][line].norm_sqr() * self.lines[earlier][line].norm_sqr();
+                    let seen = self.lines[place][line].norm_sqr() * self.lines[earlier][line].norm_sqr();
+                    let flicker = 1.0 + INPUTS_CORNER_HZ / (line as f64 * self.step_hz);
+                    sum += product.re - known * flicker * seen;
                     square += 0.5 * product.norm_sqr();
                 }
             }

@@ -35,6 +35,8 @@ const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 
 const FLICKER_CORNERS_HZ: [f64; 3] = [0.05, 1.0, 10.0];
 const FLICKER_ENDS_HZ: [f64; 3] = [25.0, 60.0, 150.0];
 const FLICKER_NATS: f64 = 3.5;
+/// Below this frequency the noise of the logged inputs may be flicker: accelerometers of which a bias wanders [Hz].
+pub(super) const INPUTS_CORNER_HZ: f64 = 5.0;
 
 /// Power of a channel's noise over frequency, 1 for white noise of unit variance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -245,17 +247,18 @@ impl Bands {
 
     /// The shapes that make the measured powers most likely.
     pub(super) fn fit(&self, shapes: &Shapes) -> Noise {
-        self.fitted(shapes, f64::INFINITY).1
+        self.fitted(shapes, f64::INFINITY, 0.0).1
     }
 
     /// How much likelier the measured powers are where the noise of the logged inputs may have any size than where it has
-    /// at most this one [nats].
+    /// at most this one, white or rising below the corner of such sensors [nats].
     pub(super) fn beyond_inputs(&self, shapes: &Shapes, most: f64) -> f64 {
-        0.5 * (self.fitted(shapes, most).0 - self.fitted(shapes, f64::INFINITY).0)
+        let known = [0.0, INPUTS_CORNER_HZ].map(|corner_hz| self.fitted(shapes, most, corner_hz).0);
+        0.5 * (known[0].min(known[1]) - self.fitted(shapes, f64::INFINITY, 0.0).0)
     }
 
-    /// -2 ln of the likelihood, and the shapes, with l at most so large.
-    fn fitted(&self, shapes: &Shapes, most_inputs: f64) -> (f64, Noise) {
+    /// -2 ln of the likelihood, and the shapes, with l at most so large and `1 + f_c / f` times it at f.
+    fn fitted(&self, shapes: &Shapes, most_inputs: f64, corner_hz: f64) -> (f64, Noise) {
         let from_hz = self.hz.first().copied().unwrap_or(0.0);
         let mut best = (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: 0.0, low: 0.0, slow: Slow::None, from_hz });
         if !self.any() {
@@ -267,7 +270,7 @@ impl Bands {
         for (slow, must_bring) in Slow::all() {
             let basis = |&hz: &f64| {
                 let [inputs, in_loop] = shapes.at(hz);
-                [1.0, inputs / peaks[0], in_loop / peaks[1], slow.at(hz)]
+                [1.0, inputs / peaks[0] * (1.0 + corner_hz / hz), in_loop / peaks[1], slow.at(hz)]
             };
             let bases: Vec<[f64; 4]> = self.hz.iter().map(basis).collect();
             let mut share = [mean, 0.1 * mean, 0.1 * mean, 0.1 * mean];

@@ -146,10 +146,11 @@ impl<'a> Problem<'a> {
         self.whitener.apply(&scaled(signals, &over_noise))
     }
 
-    /// What speaks for a torque at random in what a fit leaves, beyond one that the noise of the logged inputs makes [nats].
-    pub(crate) fn torque_at_random(&self, whitened: &[f64], inputs_nm: f64) -> f64 {
+    /// What speaks for a torque at random in what a fit leaves of some rows, beyond one that the noise of the logged inputs
+    /// makes [nats].
+    pub(crate) fn torque_at_random(&self, whitened: &[f64], rows: &[bool], inputs_nm: f64) -> f64 {
         let most = (inputs_nm / self.impulse_nm).powi(2);
-        self.whitener.beyond_inputs(whitened, &self.shapes, most, self.record.inputs.period_s)
+        self.whitener.beyond_inputs(whitened, rows, &self.shapes, most, self.record.inputs.period_s)
     }
 
     /// A torque on the gimbal as the whitened channels show it [N m].

@@ -6,6 +6,7 @@ use super::ceiling::saturated;
 use super::formulations::extend;
 use super::gross::gross;
 use super::heavy::heavy;
+use super::less::with_less;
 use super::normal::{drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::refine::Effort;
@@ -53,6 +54,17 @@ pub struct Glimpse {
 /// Refined singles, and refined extensions of each of the best.
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
+/// What a fit that closes the gap leaves of the noise.
+const CLOSED: f64 = 1.02;
+/// What a fit takes away from where on the sensitivities without its effects mislead beside it.
+const FAR: f64 = 2e3;
+/// How often it is taken further at most, and what of its square it leaves as long as it gets there.
+const MOST_TURNS: usize = 5;
+const GOES_ON: f64 = 0.95;
+/// What a fit may move by with the sensitivities where it was still its own.
+const STILL: f64 = 4.0;
+/// How often sets that are less than the best are tried, while that changes.
+const BACKWARDS: usize = 2;
 /// Most effects of a set.
 const MOST: usize = 3;
 
@@ -69,12 +81,14 @@ pub(crate) struct Looked {
     null: Fit,
     fits: Vec<Fit>,
     glimpses: Vec<Glimpse>,
+    /// What the fit left at which the sensitivities were taken, of those with effects.
+    based_at: Option<f64>,
 }
 
 /// Single effects, by the sensitivities at the fit of the nominal parameters, beside a fit that is known already.
 pub(crate) fn look(problem: &Problem, null: Fit, known: Option<Fit>) -> Looked {
     let (fits, glimpses) = singles(problem, &null, known);
-    Looked { null, fits, glimpses }
+    Looked { null, fits, glimpses, based_at: None }
 }
 
 impl Looked {
@@ -83,18 +97,37 @@ impl Looked {
         closest(&self.null, &self.fits)
     }
 
-    /// Pairs and triples from the best, by the same sensitivities.
-    pub(crate) fn widened(mut self, problem: &Problem) -> Self {
+    /// Pairs and triples from the best, by the sensitivities there where those of before are far from it.
+    pub(crate) fn widened(mut self, problem: &mut Problem) -> Self {
         for size in 1..MOST {
+            self.goes_on_from_best(problem);
             widen(problem, &self.null, &mut self.fits, size);
         }
         self
     }
 
+    /// The best fit at its end, and the sensitivities with it, where it is far from the nominal parameters alone.
+    fn goes_on_from_best(&mut self, problem: &mut Problem) {
+        let Some(best) = self.fits.first_mut().filter(|best| self.null.square - best.square > FAR) else { return };
+        for _ in 0..MOST_TURNS {
+            if self.based_at == Some(best.square) {
+                break;
+            }
+            let before = best.square;
+            rebase(problem, best);
+            polish(problem, best);
+            self.based_at = Some(if before - best.square < STILL { best.square } else { before });
+            if best.square > GOES_ON * before {
+                break;
+            }
+        }
+        sort(problem, &self.null, &mut self.fits);
+    }
+
     /// The last part: what is close to the best is brought to its end before it is judged.
     pub(crate) fn finished(self, problem: &mut Problem) -> Search {
-        let Self { null, mut fits, glimpses } = self;
-        if let Some(best) = fits.first() {
+        let Self { null, mut fits, glimpses, based_at } = self;
+        if let Some(best) = fits.first().filter(|best| based_at != Some(best.square)) {
             rebase(problem, best);
         }
         let problem = &*problem;
@@ -104,7 +137,14 @@ impl Looked {
         let last: Vec<(usize, &mut Fit)> = fits.iter_mut().enumerate().filter(close).collect();
         last.into_par_iter().for_each(|(_, fit)| polish(problem, fit));
         sort(problem, &null, &mut fits);
-        without_idle(problem, &null, &mut fits);
+        for _ in 0..BACKWARDS {
+            let best = fits.first().map(|best| best.set.clone());
+            with_less(problem, &mut fits);
+            sort(problem, &null, &mut fits);
+            if best == fits.first().map(|best| best.set.clone()) {
+                break;
+            }
+        }
         let (null, moved) = from_there(problem, null, &fits);
         // what single effects seemed to bring may have been the way that the nominal parameters found meanwhile
         let glimpses = if moved { glimpses_beside(problem, &null) } else { glimpses };
@@ -136,16 +176,21 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
     let mut fits: Vec<Fit> = known.into_iter().filter(|fit| !fit.set.0.is_empty()).collect();
     let first = best_by_effect(problem, extensions(problem, null), usize::MAX);
     let glimpses = seen(&first);
+    let alone = fits.first().filter(|fit| fit.set.0.len() == 1).map(|fit| fit.effects[0]);
+    let is_known = |extension: &Extension| alone == Some(problem.candidates[extension.index].effect);
     fits.extend(saturated(problem, null));
-    fits.extend(gross(problem, null));
-    fits.extend(heavy(problem, null));
     fits.par_extend(
         first
             .par_iter()
             .take(SINGLES)
-            .filter(|extension| promising(problem, extension))
+            .filter(|extension| promising(problem, extension) && !is_known(extension))
             .filter_map(|extension| extend(problem, null, extension)),
     );
+    fits.extend(heavy(problem, null));
+    // what is far from nominal is for a gap that nothing near it closes
+    if closest(null, &fits).square > CLOSED * problem.whitener.count() as f64 {
+        fits.extend(gross(problem, null));
+    }
     sort(problem, null, &mut fits);
     (fits, glimpses)
 }
@@ -192,46 +237,12 @@ fn seen(extensions: &[Extension]) -> Vec<Glimpse> {
     extensions.iter().map(|extension| Glimpse { index: extension.index, gain: extension.gain }).collect()
 }
 
-/// A set with a member that is zero within its error was only the better way down: the set without it starts there.
-fn without_idle(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>) {
-    let idle: Vec<(usize, usize)> = fits
-        .iter()
-        .enumerate()
-        .take(3)
-        .filter(|(_, fit)| fit.set.0.len() > 1)
-        .flat_map(|(index, fit)| {
-            (0..fit.set.0.len()).filter(|&place| fit.is_idle(place)).map(move |place| (index, place))
-        })
-        .collect();
-    let reduced: Vec<Fit> = idle
-        .into_par_iter()
-        .map(|(index, place)| {
-            let fit = &fits[index];
-            let (mut set, mut values) = (fit.set.clone(), fit.values.clone());
-            set.0.remove(place);
-            values.remove(place);
-            let mut fit = refine(problem, &set, &values, Some(fit), Effort::Quick);
-            polish(problem, &mut fit);
-            fit
-        })
-        .collect();
-    for fit in reduced {
-        fits.retain(|other| {
-            !same(problem, &other.set, &fit.set) || other.square + other.prior < fit.square + fit.prior
-        });
-        if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
-            fits.push(fit);
-        }
-    }
-    sort(problem, null, fits);
-}
-
 /// Hypotheses that are fitted until nothing moves any more: so many, with at least this share of the best one's gain.
 const POLISHED: usize = 5;
 const CLOSE: f64 = 0.5;
 
 /// Fits on from where a fit ended until it stands still.
-fn polish(problem: &Problem, fit: &mut Fit) {
+pub(super) fn polish(problem: &Problem, fit: &mut Fit) {
     let next = refine(problem, &fit.set, &fit.values, Some(fit), Effort::Full);
     if next.volume.is_finite() {
         *fit = next;

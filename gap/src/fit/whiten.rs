@@ -104,7 +104,7 @@ impl Whitener {
         let whitened = self.apply(residual);
         let step_hz = 1.0 / (self.plans.length() as f64 * behind.period_s);
         for (channel, shapes) in behind.shapes.iter().enumerate() {
-            let own = self.unwhitened(&whitened, channel, shapes, behind.period_s).fit(shapes);
+            let own = self.unwhitened(&whitened, &self.valid, channel, shapes, behind.period_s).fit(shapes);
             let powers = own.powers(shapes, self.plans.length() / 2, step_hz);
             self.gains[channel] = powers.into_iter().map(white).collect();
             self.noise[channel] = own;
@@ -122,17 +122,25 @@ impl Whitener {
         (0..channels).map(of).fold(0.0, f64::max)
     }
 
-    /// What speaks for more noise behind the loop than the logged inputs can have, in what whitening left, summed over the
-    /// channels [nats].
-    pub(crate) fn beyond_inputs(&self, whitened: &[f64], shapes: &[Shapes], most: f64, period_s: f64) -> f64 {
-        let of = |(channel, shapes)| self.unwhitened(whitened, channel, shapes, period_s).beyond_inputs(shapes, most);
+    /// What speaks for more noise behind the loop than the logged inputs can have, in what whitening left of some rows, summed
+    /// over the channels [nats].
+    pub(crate) fn beyond_inputs(
+        &self,
+        whitened: &[f64],
+        rows: &[bool],
+        shapes: &[Shapes],
+        most: f64,
+        period_s: f64,
+    ) -> f64 {
+        let of =
+            |(channel, shapes)| self.unwhitened(whitened, rows, channel, shapes, period_s).beyond_inputs(shapes, most);
         shapes.iter().enumerate().map(of).sum()
     }
 
-    /// Powers of a channel from what whitening left of it.
-    fn unwhitened(&self, whitened: &[f64], channel: usize, shapes: &Shapes, period_s: f64) -> Bands {
+    /// Powers of a channel from what whitening left of some rows of it.
+    fn unwhitened(&self, whitened: &[f64], rows: &[bool], channel: usize, shapes: &Shapes, period_s: f64) -> Bands {
         let series: Vec<f64> = of_channel(whitened, channel, self.gains.len()).collect();
-        let mut bands = Bands::new(&series, &self.valid, Of::Most, period_s);
+        let mut bands = Bands::new(&series, rows, Of::Most, period_s);
         for (power, &hz) in bands.power.iter_mut().zip(&bands.hz) {
             *power *= self.noise[channel].power(hz, shapes.at(hz));
         }

@@ -106,7 +106,10 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let gain = agreement(problem, fit, inputs_nm).powi(2);
     strangers.push(Stranger { of: AT_RANDOM, gain, torques: 1, choice: 0.0, counts });
     if !problem.turns_mostly {
-        let gain = 2.0 * problem.torque_at_random(&fit.residual, INPUTS_KNOWN * inputs_nm);
+        let steady = steady(&problem.turns);
+        let rows: Vec<bool> =
+            problem.whitener.valid.iter().zip(steady).map(|(valid, steady)| *valid && steady).collect();
+        let gain = 2.0 * problem.torque_at_random(&fit.residual, &rows, INPUTS_KNOWN * inputs_nm);
         strangers.push(Stranger { of: LIKE_NOISE, gain, torques: 1, choice: 0.0, counts: LIKE_NOISE_COUNTS });
     }
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));

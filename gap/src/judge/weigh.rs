@@ -44,6 +44,8 @@ const EXACT: [&str; 15] = [
     "gyro_damping",
     "angular_momentum",
 ];
+/// Share of what a set is worth that the best of its effects is worth alone, times their number.
+const ALONE: f64 = 0.4;
 /// What an effect must take away to be there when its size is not known to be more than zero [nats].
 pub(crate) const HELPS: f64 = 12.0;
 /// What an effect that was not worth a fit brings at most [nats].
@@ -90,7 +92,10 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         .collect();
     best_of_each(&mut all);
     let excess = (search.null.square - closest.square).max(1.0);
-    worth_their_more(&mut all, excess, |index| search.fits[index].square);
+    let cost = |fit: &Fit| fit.square + fit.prior;
+    let left: Vec<f64> = all.iter().map(|set| set.fit.map_or(f64::NAN, |fit| cost(&search.fits[fit]))).collect();
+    worth_their_more(&mut all, excess, |place| left[place]);
+    against_each_other(&mut all, |effect| alone_worth(problem, search, effect, temper));
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;
         if !all.iter().any(|set| set.effects == [effect]) {
@@ -138,8 +143,7 @@ pub(crate) fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&We
 }
 
 /// What a set has more than a smaller one must be worth it: one that takes less of what a gap has beyond the noise than the
-/// other's formulation may leave is less than that one is. The sets are those that were fitted, in the order of what they
-/// leave.
+/// other's formulation may leave is less than that one is. `left` is what each of the sets leaves, by its place.
 pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, left: impl Fn(usize) -> f64) {
     for index in 0..sets.len() {
         for other in 0..sets.len() {
@@ -152,6 +156,26 @@ pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, left: impl Fn(
             }
         }
     }
+}
+
+/// Effects that together take much and each alone next to nothing stand against each other: of a motion that the logged
+/// inputs have and the platform has not, noise for one, an unbalance is rid of by being smaller, and a constant torque puts
+/// its mean back. `alone` is what an effect is worth by itself, where that is known [nats].
+fn against_each_other(sets: &mut [Weighed], alone: impl Fn(&str) -> Option<f64>) {
+    for set in sets.iter_mut().filter(|set| set.effects.len() > 1) {
+        let most = set.effects.iter().filter_map(|effect| alone(effect)).reduce(f64::max).unwrap_or(set.nats);
+        if most < ALONE / set.effects.len() as f64 * set.nats {
+            set.nats = set.nats.min(most.max(0.0));
+        }
+    }
+}
+
+/// Evidence of an effect by itself, from its fit or else from the linear equations [nats].
+fn alone_worth(problem: &Problem, search: &Search, effect: &str, temper: f64) -> Option<f64> {
+    let fitted = search.fits.iter().filter(|fit| fit.effects == [effect]);
+    let fitted = fitted.map(|fit| fit.evidence(temper) - search.null.evidence(temper)).reduce(f64::max);
+    let own = |glimpse: &&Glimpse| problem.candidates[glimpse.index].effect == effect;
+    fitted.or_else(|| search.glimpses.iter().find(own).map(|glimpse| glimpse.gain / temper))
 }
 
 /// Names of a fit's effects, in order.
@@ -272,7 +296,7 @@ pub(crate) fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, val
 
 #[cfg(test)]
 mod tests {
-    use super::{Weighed, worth_their_more};
+    use super::{Weighed, against_each_other, worth_their_more};
 
     fn set(effects: &[&'static str], nats: f64) -> Weighed {
         Weighed { effects: effects.to_vec(), fit: None, nats, cost: 18.0 * effects.len() as f64, rare: 8.0 }
@@ -286,6 +310,16 @@ mod tests {
             let mut sets = [set(&[first], 1e5), set(&[first, "viscous_friction"], 1e5 + 180.0)];
             worth_their_more(&mut sets, 1e6, |index| left[index]);
             assert_eq!(sets[1].nats - sets[1].cost > sets[0].nats - sets[0].cost, stays, "beside {first}");
+        }
+    }
+
+    #[test]
+    fn closed_form_effects_that_take_next_to_nothing_alone_are_worth_no_more_together() {
+        for (constant_torque, together) in [(10.0, 10.0), (120.0, 200.0)] {
+            let mut sets = [set(&["constant_torque", "mass_unbalance"], 200.0), set(&["stribeck"], 5.0)];
+            let alone = |effect: &str| Some(if effect == "constant_torque" { constant_torque } else { -6.0 });
+            against_each_other(&mut sets, alone);
+            assert_eq!(sets.map(|set| set.nats.to_bits()), [together, 5.0].map(f64::to_bits));
         }
     }
 }

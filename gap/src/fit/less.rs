@@ -1,0 +1,80 @@
+//! Backwards from the best sets: without one of their members, or with a simpler one in its place.
+
+use gimbal_plant::Effect;
+use rayon::prelude::*;
+
+use super::refine::Effort;
+use super::search::{polish, same};
+use super::{Fit, Problem, Set, refine};
+
+/// Sets that are looked at.
+const LOOKED_AT: usize = 3;
+/// What a set may cost over the best one to be fitted to its end.
+const NEAR: f64 = 1.02;
+
+/// Sets near the best that are less than one that was fitted start where that one ended.
+pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
+    let cost = |fit: &Fit| fit.square + fit.prior;
+    let least = fits.first().map_or(0.0, cost);
+    let less: Vec<Fit> = fits
+        .iter()
+        .enumerate()
+        .take(LOOKED_AT)
+        .flat_map(|(index, fit)| lesser(fit, index == 0).chain(straightened(problem, fit)).map(move |less| (fit, less)))
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|(from, (set, values))| {
+            let from = inside_tolerances(problem, from, &set);
+            let mut fit = refine(problem, &set, &values, Some(&from), Effort::Quick);
+            if cost(&fit) < NEAR * least {
+                polish(problem, &mut fit);
+            }
+            fit
+        })
+        .collect();
+    for fit in less {
+        fits.retain(|other| !same(problem, &other.set, &fit.set) || cost(other) < cost(&fit));
+        if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
+            fits.push(fit);
+        }
+    }
+}
+
+/// A fit with nominal parameters that a smaller set does not release inside of their tolerances.
+fn inside_tolerances(problem: &Problem, fit: &Fit, set: &Set) -> Fit {
+    let mut from = fit.clone();
+    for index in fit.set.0.iter().filter(|index| !set.0.contains(index)) {
+        for place in problem.candidates[*index].releases.iter().filter_map(|name| problem.nuisance(name)) {
+            let tolerance = problem.nuisances[place].tolerance;
+            from.shifts[place] = from.shifts[place].clamp(-tolerance, tolerance);
+        }
+    }
+    from
+}
+
+/// A set without one of its members: one that is zero within its error was only the better way down, and each of the best
+/// may be one more.
+fn lesser(fit: &Fit, best: bool) -> impl Iterator<Item = (Set, Vec<Vec<f64>>)> {
+    let members = if fit.set.0.len() > 1 { fit.set.0.len() } else { 0 };
+    (0..members).filter(move |&place| best || fit.is_idle(place)).map(|place| {
+        let (mut set, mut values) = (fit.set.clone(), fit.values.clone());
+        set.0.remove(place);
+        values.remove(place);
+        (set, values)
+    })
+}
+
+/// A set whose cable has a loop longer than any is, with a spring in its place.
+fn straightened(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
+    let place = fit.effects.iter().position(|effect| *effect == "cable_hysteresis")?;
+    let longest_rad = Effect::from_name("cable_hysteresis")?.parameters()[1].high;
+    let &[torque_nm, displacement_rad, ..] = fit.values[place].as_slice() else { return None };
+    let spring = problem.candidates.iter().position(|candidate| candidate.effect == "cable_spring")?;
+    if displacement_rad < longest_rad || fit.effects.contains(&"cable_spring") {
+        return None;
+    }
+    let (mut set, mut values) = (fit.set.clone(), fit.values.clone());
+    set.0[place] = spring;
+    values[place] = vec![torque_nm / displacement_rad];
+    Some((set, values))
+}
