@@ -108,6 +108,10 @@ impl Looked {
 
     /// The best fit at its end, and the sensitivities with it, where it is far from the nominal parameters alone.
     fn goes_on_from_best(&mut self, problem: &mut Problem) {
+        // after a stop the way through it decides what is far
+        if problem.record.comes_near_a_stop() {
+            return;
+        }
         let Some(best) = self.fits.first_mut().filter(|best| self.null.square - best.square > FAR) else { return };
         for _ in 0..MOST_TURNS {
             if self.based_at == Some(best.square) {
@@ -176,7 +180,10 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
     let mut fits: Vec<Fit> = known.into_iter().filter(|fit| !fit.set.0.is_empty()).collect();
     let first = best_by_effect(problem, extensions(problem, null), usize::MAX);
     let glimpses = seen(&first);
-    let alone = fits.first().filter(|fit| fit.set.0.len() == 1).map(|fit| fit.effects[0]);
+    let alone = fits
+        .first()
+        .filter(|fit| fit.set.0.len() == 1 && !problem.record.comes_near_a_stop())
+        .map(|fit| fit.effects[0]);
     let is_known = |extension: &Extension| alone == Some(problem.candidates[extension.index].effect);
     fits.extend(saturated(problem, null));
     fits.par_extend(
@@ -188,7 +195,8 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
     );
     fits.extend(heavy(problem, null));
     // what is far from nominal is for a gap that nothing near it closes
-    if closest(null, &fits).square > CLOSED * problem.whitener.count() as f64 {
+    let near_a_stop = problem.record.comes_near_a_stop();
+    if near_a_stop || closest(null, &fits).square > CLOSED * problem.whitener.count() as f64 {
         fits.extend(gross(problem, null));
     }
     sort(problem, null, &mut fits);
