@@ -132,6 +132,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let Settled { mut problem, mut search, known } = match &part {
         Some(part) => {
             let left = left_of(&whole);
+            // two at once would be twice the memory, and a part that is no better is rare
             drop(whole);
             let own = settled(part, model);
             in_part = left_of(&own) < left;
@@ -261,7 +262,7 @@ fn left_of(Settled { problem, search, .. }: &Settled) -> f64 {
 fn begins_wrong(whole @ Settled { problem, search, .. }: &Settled) -> bool {
     let closest = search.closest();
     let square_of = |length_s: f64| {
-        let values = rows(problem.record, length_s) * problem.record.channels.len();
+        let values = problem.record.inputs.rows_of(length_s) * problem.record.channels.len();
         (closest.residual.iter().take(values).map(|value| value * value).sum::<f64>(), values as f64)
     };
     let (first, values) = square_of(FIRST_S);
@@ -270,11 +271,6 @@ fn begins_wrong(whole @ Settled { problem, search, .. }: &Settled) -> bool {
     let stands_out = (first / elsewhere - values) / (2.0 * values).sqrt() > FIRST_STANDS_OUT;
     let (first, values) = square_of(BEGINNING_S);
     stands_out || astray(whole) && first - values > 0.5 * (closest.square - count)
-}
-
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-fn rows(record: &Record, length_s: f64) -> usize {
-    (length_s / record.inputs.period_s) as usize
 }
 
 /// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.

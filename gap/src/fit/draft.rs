@@ -116,7 +116,6 @@ impl Draft<'_> {
 }
 
 /// Rows for which a prediction remembers where it began.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
 pub(crate) fn remembered_rows(record: &Record) -> usize {
-    (MEMORY_S / record.inputs.period_s) as usize
+    record.inputs.rows_of(MEMORY_S)
 }

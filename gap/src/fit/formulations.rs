@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::extension::{Extension, first_of_each};
 use super::hypothesis::{Point, left};
 use super::refine::Effort;
-use super::search::{Extension, first_of_each};
 use super::{Fit, Problem, Set, refine};
 use crate::library::NAMED;
 
@@ -29,11 +29,11 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
         let (set, values) = extended(from, index, own);
         refine(problem, &set, &values, Some(from), Effort::Quick)
     };
-    let closer = |a: &Fit, b: &Fit| cost(a).total_cmp(&cost(b));
+    let closer = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
     let closest = starts.into_par_iter().map(fitted).min_by(closer)?;
     // other formulations are tried where the first could be named, from the same place: a prior is about where a fit begins
     let others = OTHERS.iter().find(|(effect, _)| *effect == candidate.effect).map_or(&[][..], |(_, others)| others);
-    if others.is_empty() || cost(from) - cost(&closest) < 2.0 * NAMED {
+    if others.is_empty() || from.cost() - closest.cost() < 2.0 * NAMED {
         return Some(closest);
     }
     let other = |(way, ratio): &(f64, f64)| {
@@ -43,10 +43,6 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
         fitted((extension.index, own))
     };
     others.par_iter().map(other).chain([closest]).min_by(closer)
-}
-
-fn cost(fit: &Fit) -> f64 {
-    fit.square + fit.prior
 }
 
 /// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does.

@@ -14,8 +14,7 @@ const NEAR: f64 = 1.02;
 
 /// Sets near the best that are less than one that was fitted start where that one ended.
 pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
-    let cost = |fit: &Fit| fit.square + fit.prior;
-    let least = fits.first().map_or(0.0, cost);
+    let least = fits.first().map_or(0.0, Fit::cost);
     let less: Vec<Fit> = fits
         .iter()
         .enumerate()
@@ -26,14 +25,14 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
         .map(|(from, (set, values))| {
             let from = inside_tolerances(problem, from, &set);
             let mut fit = refine(problem, &set, &values, Some(&from), Effort::Quick);
-            if cost(&fit) < NEAR * least {
+            if fit.cost() < NEAR * least {
                 polish(problem, &mut fit);
             }
             fit
         })
         .collect();
     for fit in less {
-        fits.retain(|other| !same(problem, &other.set, &fit.set) || cost(other) < cost(&fit));
+        fits.retain(|other| !same(problem, &other.set, &fit.set) || other.cost() < fit.cost());
         if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
             fits.push(fit);
         }

@@ -2,6 +2,7 @@
 
 mod ceiling;
 mod draft;
+mod extension;
 mod formulations;
 mod gross;
 mod ground;
@@ -30,6 +31,8 @@ mod turning;
 mod vectors;
 mod whiten;
 
+pub use extension::Glimpse;
+pub(crate) use extension::{first_of_each, glimpses_beside};
 pub(crate) use ground::{Ground, Known};
 pub(crate) use hypothesis::{Hypothesis, Outcome, Point};
 pub(crate) use linear::Linear;
@@ -40,8 +43,8 @@ pub use refine::{Effort, Fit, refine};
 pub(crate) use refine::{is_idle, linearised, stand, standard_errors};
 pub(crate) use refit::rebase;
 pub use refit::{refit, without};
-pub use search::{Glimpse, Search, Set, null, search};
-pub(crate) use search::{ended, glimpses_beside, look};
+pub use search::{Search, Set, null, search};
+pub(crate) use search::{ended, look};
 pub(crate) use signals::{difference, of_channel, predicted, residual as raw_residual};
 pub(crate) use tried::Tried;
 pub use whiten::Whitener;

@@ -60,6 +60,11 @@ impl Fit {
         -0.5 * self.square / temper - 0.5 * self.prior + self.volume
     }
 
+    /// What it leaves and what its shifts cost.
+    pub(crate) fn cost(&self) -> f64 {
+        self.square + self.prior
+    }
+
     /// Whether the size of a member of the set is zero within three standard errors.
     #[must_use]
     pub fn is_idle(&self, place: usize) -> bool {

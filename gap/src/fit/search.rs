@@ -3,12 +3,11 @@
 use rayon::prelude::*;
 
 use super::ceiling::saturated;
+use super::extension::{Extension, Glimpse, best_by_effect, extensions, glimpses_beside, promising, seen};
 use super::formulations::extend;
 use super::gross::gross;
 use super::heavy::heavy;
 use super::less::with_less;
-use super::normal::{drive, of_any_scale, slices, solve};
-use super::pull::Pull;
 use super::refine::Effort;
 use super::refit::rebase;
 use super::{Fit, Problem, refine};
@@ -42,15 +41,6 @@ impl Search {
     }
 }
 
-/// What an effect would add, without a fit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Glimpse {
-    /// Its candidate.
-    pub index: usize,
-    /// Linear evidence over what it is added to [nats].
-    pub gain: f64,
-}
-
 /// Refined singles, and refined extensions of each of the best.
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
@@ -81,7 +71,7 @@ pub(crate) struct Looked {
     null: Fit,
     fits: Vec<Fit>,
     glimpses: Vec<Glimpse>,
-    /// What the fit left at which the sensitivities were taken, of those with effects.
+    /// What the fit with effects leaves whose sensitivities the problem holds.
     based_at: Option<f64>,
 }
 
@@ -120,7 +110,7 @@ impl Looked {
             let before = best.square;
             rebase(problem, best);
             polish(problem, best);
-            self.based_at = Some(if before - best.square < STILL { best.square } else { before });
+            self.based_at = (before - best.square < STILL).then_some(best.square);
             if best.square > GOES_ON * before {
                 break;
             }
@@ -180,10 +170,8 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
     let mut fits: Vec<Fit> = known.into_iter().filter(|fit| !fit.set.0.is_empty()).collect();
     let first = best_by_effect(problem, extensions(problem, null), usize::MAX);
     let glimpses = seen(&first);
-    let alone = fits
-        .first()
-        .filter(|fit| fit.set.0.len() == 1 && !problem.record.comes_near_a_stop())
-        .map(|fit| fit.effects[0]);
+    let near_a_stop = problem.record.comes_near_a_stop();
+    let alone = fits.first().filter(|fit| fit.set.0.len() == 1 && !near_a_stop).map(|fit| fit.effects[0]);
     let is_known = |extension: &Extension| alone == Some(problem.candidates[extension.index].effect);
     fits.extend(saturated(problem, null));
     fits.par_extend(
@@ -195,7 +183,6 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
     );
     fits.extend(heavy(problem, null));
     // what is far from nominal is for a gap that nothing near it closes
-    let near_a_stop = problem.record.comes_near_a_stop();
     if near_a_stop || closest(null, &fits).square > CLOSED * problem.whitener.count() as f64 {
         fits.extend(gross(problem, null));
     }
@@ -230,19 +217,9 @@ fn widen(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>, size: usize) {
 fn from_there(problem: &Problem, null: Fit, fits: &[Fit]) -> (Fit, bool) {
     let Some(best) = fits.first() else { return (null, false) };
     let again = refine(problem, &Set::default(), &[], Some(best), Effort::Full);
-    let cost = |fit: &Fit| fit.square + fit.prior;
-    let further = again.volume.is_finite() && cost(&again) < cost(&null);
-    let moved = further && cost(&null) - cost(&again) > 1.0;
+    let further = again.volume.is_finite() && again.cost() < null.cost();
+    let moved = further && null.cost() - again.cost() > 1.0;
     (if further { again } else { null }, moved)
-}
-
-/// What every effect that a fit does not have would add to it.
-pub(crate) fn glimpses_beside(problem: &Problem, fit: &Fit) -> Vec<Glimpse> {
-    seen(&best_by_effect(problem, extensions(problem, fit), usize::MAX))
-}
-
-fn seen(extensions: &[Extension]) -> Vec<Glimpse> {
-    extensions.iter().map(|extension| Glimpse { index: extension.index, gain: extension.gain }).collect()
 }
 
 /// Hypotheses that are fitted until nothing moves any more: so many, with at least this share of the best one's gain.
@@ -255,10 +232,6 @@ pub(super) fn polish(problem: &Problem, fit: &mut Fit) {
     if next.volume.is_finite() {
         *fit = next;
     }
-}
-
-fn promising(problem: &Problem, extension: &Extension) -> bool {
-    problem.candidates[extension.index].is_promised(extension.gain)
 }
 
 /// By evidence under the noise that the best of them leaves.
@@ -276,97 +249,4 @@ pub(crate) fn same(problem: &Problem, a: &Set, b: &Set) -> bool {
         names
     };
     names(a) == names(b)
-}
-
-/// One candidate more.
-#[derive(Debug, Clone)]
-pub(super) struct Extension {
-    /// The candidate.
-    pub(super) index: usize,
-    /// Linear evidence over the fit that it extends [nats].
-    gain: f64,
-    /// What the linear fit makes of its columns.
-    pub(super) amplitudes: Vec<f64>,
-}
-
-/// Every candidate more, at a fit.
-fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
-    let columns = slices(&problem.whitened);
-    let mut drive = drive(&columns, &fit.residual);
-    // priors pull the shifts that the fit has already
-    let (chosen, mut precision) = problem.chosen(&fit.set.0);
-    let begin = problem.columns.begin;
-    let pull = Pull::new(problem, &precision, &fit.shifts);
-    for (place, slope) in pull.slope.iter().enumerate() {
-        drive[begin + place] -= slope;
-        precision[begin + place] = pull.curvature[place];
-    }
-    let base = solve(&problem.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.evidence);
-    (0..problem.candidates.len())
-        .into_par_iter()
-        .map(|index| {
-            if fit.set.0.iter().any(|&has| problem.candidates[has].effect == problem.candidates[index].effect) {
-                return hopeless(index);
-            }
-            let mut set = fit.set.0.clone();
-            set.push(index);
-            let (wide, mut wide_precision) = problem.chosen(&set);
-            let mut drive = drive.clone();
-            // a released parameter is no longer pulled back
-            let wide_pull = Pull::new(problem, &wide_precision, &fit.shifts);
-            for place in 0..fit.shifts.len() {
-                drive[begin + place] += pull.slope[place] - wide_pull.slope[place];
-            }
-            wide_precision[begin..begin + fit.shifts.len()].copy_from_slice(&wide_pull.curvature);
-            let released = wide_pull.walls - pull.walls - 0.5 * (pull.cost - wide_pull.cost);
-            let candidate = &problem.candidates[index];
-            let Some(solution) = solve(&problem.gram, &drive, &wide, &wide_precision) else {
-                return hopeless(index);
-            };
-            let amplitudes: Vec<f64> = if candidate.releases.is_empty() {
-                let from = wide.len() - candidate.probes.len();
-                (from..wide.len()).map(|place| solution.coefficients[place]).collect()
-            } else {
-                vec![0.0; candidate.releases.len()]
-            };
-            // there is no inertia below zero
-            let below_zero = candidate.effect == "flexible_mode" && amplitudes.first().is_none_or(|own| *own <= 0.0);
-            let sane = candidate.holds_at(&amplitudes) && !below_zero;
-            let sizes = (wide.len() - candidate.probes.len()..wide.len()).zip(&candidate.prior);
-            let scale_free: f64 =
-                sizes.map(|(place, (_, sigma))| of_any_scale(*sigma, solution.covariance[(place, place)].sqrt())).sum();
-            let gain = if sane {
-                solution.evidence + scale_free - base - released - (candidate.siblings as f64).ln()
-            } else {
-                f64::NEG_INFINITY
-            };
-            Extension { index, gain, amplitudes }
-        })
-        .collect()
-}
-
-fn hopeless(index: usize) -> Extension {
-    Extension { index, gain: f64::NEG_INFINITY, amplitudes: Vec::new() }
-}
-
-/// The best candidate of each effect, the best effects first.
-fn best_by_effect(problem: &Problem, mut order: Vec<Extension>, count: usize) -> Vec<Extension> {
-    order.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    first_of_each(&mut order, |extension| problem.candidates[extension.index].effect);
-    order.retain(|extension| extension.gain.is_finite());
-    order.truncate(count);
-    order
-}
-
-/// Keeps the first of each kind.
-pub(super) fn first_of_each<T, K: PartialEq>(all: &mut Vec<T>, kind: impl Fn(&T) -> K) {
-    let mut seen: Vec<K> = Vec::new();
-    all.retain(|one| {
-        let own = kind(one);
-        let new = !seen.contains(&own);
-        if new {
-            seen.push(own);
-        }
-        new
-    });
 }

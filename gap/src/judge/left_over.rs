@@ -28,8 +28,7 @@ const BY_CHANCE: f64 = 4.0;
 /// The largest excess [standard deviations].
 pub(crate) fn left_over(problem: &Problem, whitened: &[f64]) -> f64 {
     let channels = problem.record.channels.len();
-    let steady = steady(&problem.turns);
-    let valid: Vec<bool> = problem.whitener.valid.iter().zip(steady).map(|(valid, steady)| *valid && steady).collect();
+    let valid = steady(problem);
     let period_s = problem.record.inputs.period_s;
     (0..channels)
         .map(|channel| {
@@ -39,9 +38,10 @@ pub(crate) fn left_over(problem: &Problem, whitened: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Rows away from those at which the bearing turns around.
-pub(super) fn steady(turns: &[bool]) -> Vec<bool> {
-    let mut steady = vec![true; turns.len()];
+/// Rows that count, away from those at which the bearing turns around.
+pub(super) fn steady(problem: &Problem) -> Vec<bool> {
+    let turns = &problem.turns;
+    let mut steady = problem.whitener.valid.clone();
     for row in (0..turns.len()).filter(|&row| turns[row]) {
         let around = row.saturating_sub(BEFORE)..(row + AFTER).min(turns.len());
         steady[around].fill(false);

@@ -56,8 +56,7 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
         all.extend((0..=rows - length).filter(clear).map(moment).filter(|moment| moment.nats > LEAST));
     }
     all.sort_by(|a, b| b.nats.total_cmp(&a.nats));
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-    let apart = (APART_S / problem.record.inputs.period_s) as usize;
+    let apart = problem.record.inputs.rows_of(APART_S);
     let mut chosen: Vec<Moment> = Vec::new();
     for moment in all {
         let clear = |other: &Moment| {

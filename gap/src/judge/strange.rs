@@ -106,10 +106,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let gain = agreement(problem, fit, inputs_nm).powi(2);
     strangers.push(Stranger { of: AT_RANDOM, gain, torques: 1, choice: 0.0, counts });
     if !problem.turns_mostly {
-        let steady = steady(&problem.turns);
-        let rows: Vec<bool> =
-            problem.whitener.valid.iter().zip(steady).map(|(valid, steady)| *valid && steady).collect();
-        let gain = 2.0 * problem.torque_at_random(&fit.residual, &rows, INPUTS_KNOWN * inputs_nm);
+        let gain = 2.0 * problem.torque_at_random(&fit.residual, &steady(problem), INPUTS_KNOWN * inputs_nm);
         strangers.push(Stranger { of: LIKE_NOISE, gain, torques: 1, choice: 0.0, counts: LIKE_NOISE_COUNTS });
     }
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
@@ -121,7 +118,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
 fn agreement(problem: &Problem, fit: &Fit, inputs_nm: f64) -> f64 {
     let mut residual = fit.residual.clone();
     let rows = residual.chunks_exact_mut(problem.record.channels.len());
-    for (row, _) in rows.zip(steady(&problem.turns)).filter(|(_, steady)| !steady) {
+    for (row, _) in rows.zip(steady(problem)).filter(|(_, steady)| !steady) {
         row.fill(0.0);
     }
     problem.path.agreement(&problem.whitener, &residual, AGREED_HZ, inputs_nm).max(0.0)

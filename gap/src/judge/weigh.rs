@@ -4,7 +4,7 @@ use gimbal_model_file::Tolerance;
 use gimbal_plant::{Bound, Effect, Parameter};
 
 use super::stretch::carried_alone;
-use crate::fit::{Fit, Glimpse, Problem, Search, glimpses_beside};
+use crate::fit::{Fit, Glimpse, Problem, Search, first_of_each, glimpses_beside};
 use crate::library::{NAMED, releases};
 
 /// Evidence that a nominal parameter beyond its tolerance must bring to be named [nats].
@@ -92,8 +92,7 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         .collect();
     best_of_each(&mut all);
     let excess = (search.null.square - closest.square).max(1.0);
-    let cost = |fit: &Fit| fit.square + fit.prior;
-    let left: Vec<f64> = all.iter().map(|set| set.fit.map_or(f64::NAN, |fit| cost(&search.fits[fit]))).collect();
+    let left: Vec<f64> = all.iter().map(|set| set.fit.map_or(f64::NAN, |fit| search.fits[fit].cost())).collect();
     worth_their_more(&mut all, excess, |place| left[place]);
     against_each_other(&mut all, |effect| alone_worth(problem, search, effect, temper));
     for glimpse in &search.glimpses {
@@ -126,14 +125,7 @@ pub(crate) fn hidden_beside(problem: &Problem, search: &Search, sets: &[Weighed]
 /// Of fits of the same effects, which began elsewhere and stand still elsewhere, the one that is worth most.
 fn best_of_each(all: &mut Vec<Weighed>) {
     all.sort_by(|a, b| b.nats.total_cmp(&a.nats));
-    let mut seen: Vec<Vec<&str>> = Vec::new();
-    all.retain(|set| {
-        let new = !seen.contains(&set.effects);
-        if new {
-            seen.push(set.effects.clone());
-        }
-        new
-    });
+    first_of_each(all, |set| set.effects.clone());
 }
 
 /// The set that was fitted and has most of something, of those that have any.

@@ -17,9 +17,8 @@ impl Record {
     }
 
     /// What follows its first second; none where that is too short.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
     pub(crate) fn after_its_beginning(&self, bearing: &bearing::Config) -> Option<Self> {
-        let from = (BEGINNING_S / self.inputs.period_s) as usize;
+        let from = self.inputs.rows_of(BEGINNING_S);
         self.part(from..self.rows(), bearing, "no prediction gets away from the beginning", "past it")
     }
 

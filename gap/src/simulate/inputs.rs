@@ -65,6 +65,12 @@ impl Inputs {
         }
     }
 
+    /// Rows of a length of time.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
+    pub(crate) fn rows_of(&self, length_s: f64) -> usize {
+        (length_s / self.period_s) as usize
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
