@@ -260,7 +260,8 @@ fn helps(search: &Search, fit: &Fit, place: usize) -> bool {
 }
 
 /// What a shape beyond its realistic range by more than its error costs: a cable's loop as long as the motion is a
-/// spring; and a size that has a least one, far below it: how soon friction builds up is then what the law is at zero rate.
+/// spring; a size that has a least one, far below it: how soon friction builds up is then what the law is at zero rate; and
+/// one beyond all that are realistic that may as well be none: a mode of all the inertia is a hump of the noise.
 pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
     let Some(effect) = Effect::from_name(effect) else { return 0.0 };
     let shapes = effect.parameters().iter().zip(values.iter().zip(errors)).skip(effect.sizes());
@@ -268,11 +269,12 @@ pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
         let factor = (2.0 * error / value.abs().max(1e-30)).min(2.0).exp();
         parameter.bound != Bound::Any && (value * factor < parameter.low || value / factor > parameter.high)
     };
-    let sizes = effect.parameters().iter().zip(values).take(effect.sizes());
-    let too_small = |(parameter, value): (&Parameter, &f64)| {
-        parameter.bound == Bound::NotNegative && *value < FAR_BELOW * parameter.low
+    let sizes = effect.parameters().iter().zip(values.iter().zip(errors)).take(effect.sizes());
+    let too_small_or_unknown = |(parameter, (value, error)): (&Parameter, (&f64, &f64))| {
+        let unknown = *value > parameter.high && 2.0 * error > *value;
+        parameter.bound == Bound::NotNegative && (*value < FAR_BELOW * parameter.low || unknown)
     };
-    if shapes.into_iter().any(outside) || sizes.into_iter().any(too_small) { BOUND_HIT } else { 0.0 }
+    if shapes.into_iter().any(outside) || sizes.into_iter().any(too_small_or_unknown) { BOUND_HIT } else { 0.0 }
 }
 
 /// Whether a nominal parameter is beyond its tolerance by more than its own error.
@@ -288,7 +290,7 @@ pub(crate) fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, val
 
 #[cfg(test)]
 mod tests {
-    use super::{Weighed, against_each_other, worth_their_more};
+    use super::{BOUND_HIT, Weighed, against_each_other, at_a_bound, worth_their_more};
 
     fn set(effects: &[&'static str], nats: f64) -> Weighed {
         Weighed { effects: effects.to_vec(), fit: None, nats, cost: 18.0 * effects.len() as f64, rare: 8.0 }
@@ -302,6 +304,14 @@ mod tests {
             let mut sets = [set(&[first], 1e5), set(&[first, "viscous_friction"], 1e5 + 180.0)];
             worth_their_more(&mut sets, 1e6, |index| left[index]);
             assert_eq!(sets[1].nats - sets[1].cost > sets[0].nats - sets[0].cost, stays, "beside {first}");
+        }
+    }
+
+    #[test]
+    fn closed_form_a_size_beyond_all_realistic_ones_is_none_unless_it_is_known() {
+        for (error, costs) in [(1.1, BOUND_HIT), (0.1, 0.0)] {
+            let cost = at_a_bound("flexible_mode", &[0.92, 46.0, 0.1], &[error, 2.0, 0.05]);
+            assert_eq!(cost.to_bits(), costs.to_bits(), "+- {error}");
         }
     }
 

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! White motion and white noise look alike in the rate; the outputs tell them apart. The filter stays when the
-//! nominal prediction from the filtered rate is closer to them from one row to the next.
+//! nominal prediction from the filtered rate is closer to them in what is quick.
 
 use realfft::RealFftPlanner;
 
@@ -24,10 +24,11 @@ const SEGMENT: usize = 2048;
 const STEP: f64 = 4.0;
 /// Rows around a step that keep theirs too.
 const AROUND: usize = 20;
-/// Share of an output's misfit from row to row that the filter may leave.
+/// Share of an output's quick misfit that the filter may leave.
 const BETTER: f64 = 0.995;
-/// Rows over which the misfit is compared.
-const APART: usize = 12;
+/// Rows between those of which third differences are taken: what is slower than 10 Hz, where parameters are off, is hardly
+/// in them.
+const APART: usize = 8;
 
 impl Record {
     /// Filters the rate where that brings the prediction closer.
@@ -43,14 +44,15 @@ impl Record {
         }
     }
 
-    /// What changes between rows that stand `APART` in the nominal misfit of each output.
+    /// Third differences of each output's nominal misfit, squared and summed.
     fn misfit(&self, physics: &Physics, inputs: &Inputs) -> Vec<f64> {
         let prediction = predict(physics, inputs, &self.begin(physics, inputs), usize::MAX);
         let of = |channel: &super::Channel| {
             let predicted = crate::fit::predicted(channel.signal, &prediction);
             let off = |k: usize| channel.values[k] - predicted[k];
-            let both = |k: &usize| channel.valid[*k] && channel.valid[k - APART];
-            (APART..self.rows()).filter(both).map(|k| (off(k) - off(k - APART)).powi(2)).sum::<f64>().max(1e-300)
+            let all = |k: &usize| (0..4).all(|step| channel.valid[k - step * APART]);
+            let third = |k: usize| off(k) - 3.0 * (off(k - APART) - off(k - 2 * APART)) - off(k - 3 * APART);
+            (3 * APART..self.rows()).filter(all).map(|k| third(k).powi(2)).sum::<f64>().max(1e-300)
         };
         self.channels.iter().map(of).collect()
     }
