@@ -6,7 +6,7 @@ use super::floor::floor_left;
 use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
-use super::plain::{needed, nominal, rounded};
+use super::plain::{Needs, columns as columns_of, nominal, rounded};
 use super::regress::Grams;
 use super::resonance::modes;
 use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
@@ -20,8 +20,13 @@ const STEADY: f64 = 0.97;
 /// A column must keep this share of its power beside the nominal parameters, and this much through the band.
 const LEAST_KEPT: f64 = 1e-4;
 const LEAST_PASSED: f64 = 0.02;
+/// One that hangs on the effort must keep this much beside all that the effort needed is of: it is the effort in disguise
+/// where the axis slips one way only.
+const LEAST_ITS_OWN: f64 = 0.01;
 /// And no more than this share of its deviation may be noise of the motion.
 const MOST_NOISE: f64 = 0.4;
+/// Effects that need this share of the effort are looked at as what other effects hang on, too.
+const MUCH_NEEDED: f64 = 0.1;
 /// A gap is one from this power over that of noise on.
 const NOTABLE: f64 = 1.5;
 
@@ -33,8 +38,8 @@ pub(super) struct Balance {
     pub(super) target: Vec<f64>,
     /// Effort on the grid.
     pub(super) effort: Vec<f64>,
-    /// Parameters and a constant of the effort needed.
-    pub(super) needs: [f64; 4],
+    /// What the effort needed is of.
+    pub(super) needs: Needs,
     pub(super) columns: Vec<Vec<f64>>,
     pub(super) problem: Problem,
     /// Effects that this motion cannot show.
@@ -51,24 +56,26 @@ impl Balance {
         let mut balance = Self::new(motion.clone(), model, &[]);
         let set = balance.search(model);
         // plain least squares have the nominal parameters already
-        let added = |shape: &&Shape| **shape != Shape::Scale && !NOMINAL.contains(shape);
+        let added = |shape: &&Shape| **shape != Shape::Scale && !NOMINAL.contains(shape) && !shape.hangs_on_effort();
         let shapes = set.members.iter().map(|&member| &balance.problem.candidates[member].shape);
         let found: Vec<Shape> = shapes.filter(added).cloned().collect();
-        if found.is_empty() || rounded(motion.clone(), &found).0.full_at.to_bits() == balance.motion.full_at.to_bits() {
+        let (beside, needs, _) = rounded(motion.clone(), &found);
+        let as_round = beside.full_at.to_bits() == balance.motion.full_at.to_bits();
+        if found.is_empty() || as_round && needs.share_of_effects(&beside) < MUCH_NEEDED {
             return (balance, set);
         }
         let mut again = Self::new(motion, model, &found);
         let other = again.search(model);
-        let left = |balance: &Self, set: &Set| rms(&balance.residual(&set.members));
-        if left(&again, &other) < left(&balance, &set) { (again, other) } else { (balance, set) }
+        if again.problem.key(&other) < balance.problem.key(&set) { (again, other) } else { (balance, set) }
     }
 
     /// Makes the balance and every column, friction's corner as it is beside some effects.
     fn new(motion: Motion, model: &AxisModel, beside: &[Shape]) -> Self {
         let (mut motion, found, rest) = rounded(motion, beside);
-        let needs = if motion.stands { [0.0, 0.0, model.coulomb, 0.0] } else { found };
-        motion.needed = needed(&motion, needs);
+        let needs = if motion.stands { Needs::friction(model.coulomb) } else { found };
+        motion.needed = needs.at(&motion);
         motion.size = rms(&motion.needed).max(1e-30);
+        let needed_of = columns_of(&motion, beside);
         let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
         let effort = motion.raw(&motion.effort);
         let parameters = nominal(model);
@@ -114,9 +121,13 @@ impl Balance {
         let mut grams = Grams::new(&columns, &target, &motion.block);
         candidates.retain(|candidate| {
             let released = candidate.shape == Shape::Scale || NOMINAL.contains(&candidate.shape);
-            let beside: Vec<usize> = (0..3).collect();
-            let kept = candidate.columns.iter().map(|&column| grams.keeps(column, &beside)).fold(0.0, f64::max);
-            let shows = released || kept > LEAST_KEPT;
+            let base: Vec<usize> = (0..3).collect();
+            let kept = candidate.columns.iter().map(|&column| grams.keeps(column, &base)).fold(0.0, f64::max);
+            let disguised = !beside.is_empty() && candidate.shape.hangs_on_effort() && {
+                let own = candidate.columns.iter().map(|&column| columns[column].clone());
+                own.map(|column| kept_of(column, &needed_of, &motion)).fold(0.0, f64::max) < LEAST_ITS_OWN
+            };
+            let shows = released || kept > LEAST_KEPT && !disguised;
             if !shows {
                 hidden.push(candidate.shape.effect());
             }
@@ -223,6 +234,13 @@ impl Balance {
         }
         residual
     }
+}
+
+/// Share of its power that a column keeps beside others.
+fn kept_of(column: Vec<f64>, others: &[Vec<f64>], motion: &Motion) -> f64 {
+    let all = [others, &[column]].concat();
+    let beside: Vec<usize> = (0..others.len()).collect();
+    Grams::new(&all, &all[others.len()], &motion.block).keeps(others.len(), &beside)
 }
 
 /// Noise that the motion brings into a column of its higher derivatives.

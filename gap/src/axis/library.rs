@@ -89,6 +89,9 @@ pub(super) enum Shape {
     RateDelay,
 }
 
+/// Relative change of a scale that is none: less than half of an effort is another unit.
+const LEAST_SCALE: f64 = -0.5;
+
 /// Parameters of the nominal model.
 pub(super) const NOMINAL: [Shape; 3] = [Shape::Inertia, Shape::Viscous, Shape::Coulomb];
 
@@ -175,6 +178,19 @@ impl Shape {
         matches!((self, other), (Self::Spring, Self::Constant)) || *self == Self::Scale && NOMINAL.contains(other)
     }
 
+    /// Whether it hangs on the effort that the motion needs.
+    pub(super) fn hangs_on_effort(&self) -> bool {
+        matches!(
+            self,
+            Self::LoadDependence
+                | Self::MotorRipple { .. }
+                | Self::DeadZone
+                | Self::TorqueCurve
+                | Self::Lag
+                | Self::LoadGain { .. }
+        )
+    }
+
     /// Share of the effort's power that it must take. What acts at reversals, or through the motion's higher derivatives, is
     /// never quite as it is formulated here; what hangs on the place or on a channel is known by that.
     pub(super) fn least_of_effort(&self) -> f64 {
@@ -233,6 +249,7 @@ impl Shape {
             | Self::Flexible => amplitudes[0] > 0.0,
             Self::Presliding { .. } => amplitudes[0] > 0.0 && amplitudes[0] < 1.5 * level.abs(),
             Self::Backlash { .. } => amplitudes[0] < 0.0 && amplitudes[1] < 0.0,
+            Self::Scale => amplitudes[0] > LEAST_SCALE,
             _ => true,
         }
     }

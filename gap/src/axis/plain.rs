@@ -17,42 +17,77 @@ pub(super) fn nominal(model: &AxisModel) -> [f64; 3] {
     [model.inertia, model.viscous, model.coulomb]
 }
 
-/// Effort that parameters and a constant need, at every row.
-pub(super) fn needed(motion: &Motion, parameters: [f64; 4]) -> Vec<f64> {
-    let [inertia, viscous, coulomb, constant] = parameters;
-    (0..motion.q.len())
-        .map(|i| inertia * motion.a[i] + viscous * motion.v[i] + coulomb * motion.s[i] + constant)
-        .collect()
+/// What a motion needs of effort: the nominal parameters and a constant; where something else acts on the axis, gravity for
+/// one, all that was found.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Needs {
+    parameters: [f64; 4],
+    effects: Vec<(Shape, Vec<f64>)>,
+}
+
+impl Needs {
+    /// Friction alone.
+    pub(super) fn friction(coulomb: f64) -> Self {
+        Self { parameters: [0.0, 0.0, coulomb, 0.0], effects: Vec::new() }
+    }
+
+    /// The effort, at every row.
+    pub(super) fn at(&self, motion: &Motion) -> Vec<f64> {
+        let [inertia, viscous, coulomb, constant] = self.parameters;
+        let mut needed: Vec<f64> = (0..motion.q.len())
+            .map(|i| inertia * motion.a[i] + viscous * motion.v[i] + coulomb * motion.s[i] + constant)
+            .collect();
+        for (shape, amplitudes) in &self.effects {
+            for (column, amplitude) in shape.columns(motion).iter().zip(amplitudes) {
+                needed.iter_mut().zip(column).for_each(|(sum, value)| *sum += amplitude * value);
+            }
+        }
+        needed
+    }
+
+    /// Share of it that is the effects', by root mean square.
+    pub(super) fn share_of_effects(&self, motion: &Motion) -> f64 {
+        let effects = Self { parameters: [0.0; 4], effects: self.effects.clone() };
+        rms(&effects.at(motion)) / rms(&self.at(motion)).max(1e-300)
+    }
 }
 
 /// The parameters of a motion by plain least squares, with a constant, and the root mean square of what they leave: a
 /// first look, and what effects of the effort hang on.
 pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
-    fitted(motion, &columns(motion, &[]), &motion.raw(&motion.effort))
+    let (needs, rest) = fitted(motion, &[], &motion.raw(&motion.effort));
+    (needs.parameters, rest)
 }
 
 /// Columns of the nominal parameters, of a constant and of effects.
-fn columns(motion: &Motion, beside: &[Shape]) -> Vec<Vec<f64>> {
+pub(super) fn columns(motion: &Motion, beside: &[Shape]) -> Vec<Vec<f64>> {
     let mut columns: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(motion)).collect();
     columns.push(vec![1.0; motion.rows.len()]);
     columns.extend(beside.iter().flat_map(|shape| shape.on_grid(motion)));
     columns
 }
 
-fn fitted(motion: &Motion, columns: &[Vec<f64>], effort: &[f64]) -> ([f64; 4], f64) {
-    let grams = Grams::new(columns, effort, &motion.block);
+fn fitted(motion: &Motion, beside: &[Shape], effort: &[f64]) -> (Needs, f64) {
+    let columns = columns(motion, beside);
+    let grams = Grams::new(&columns, effort, &motion.block);
     let all: Vec<usize> = (0..columns.len()).collect();
     let fit = grams.fit(&all);
     let rest = (grams.square_of_fit(&all) / effort.len().max(1) as f64).sqrt();
-    ([fit[0], fit[1], fit[2], fit[3]], rest)
+    let mut amplitudes = fit[4..].iter().copied();
+    let of = |shape: &Shape| (shape.clone(), amplitudes.by_ref().take(shape.columns(motion).len()).collect());
+    let mut effects: Vec<(Shape, Vec<f64>)> = beside.iter().map(of).collect();
+    if !beside.iter().any(|shape| shape.block() == "disturbance") {
+        effects.clear();
+    }
+    (Needs { parameters: [fit[0], fit[1], fit[2], fit[3]], effects }, rest)
 }
 
 /// The motion with the friction that comes up to its level at the rate that explains most beside effects, and how plain
 /// least squares explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than
 /// the least only where that leaves a good deal less.
-pub(super) fn rounded(mut motion: Motion, beside: &[Shape]) -> (Motion, [f64; 4], f64) {
+pub(super) fn rounded(mut motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
     let effort = motion.raw(&motion.effort);
-    let (sharp, sharp_rest) = fitted(&motion, &columns(&motion, beside), &effort);
+    let (sharp, sharp_rest) = fitted(&motion, beside, &effort);
     let (quiet, widest) = (motion.quiet, WIDEST_ROUNDING * motion.fastest);
     if motion.stands {
         return (motion, sharp, sharp_rest);
@@ -61,13 +96,13 @@ pub(super) fn rounded(mut motion: Motion, beside: &[Shape]) -> (Motion, [f64; 4]
     let mut best = (quiet, sharp, ROUNDED * sharp_rest);
     for rate in rates.take_while(|rate| *rate < widest) {
         motion = motion.with_full_friction_at(rate);
-        let (parameters, rest) = fitted(&motion, &columns(&motion, beside), &effort);
+        let (needs, rest) = fitted(&motion, beside, &effort);
         if rest < best.2 {
-            best = (rate, parameters, rest);
+            best = (rate, needs, rest);
         }
     }
-    let (rate, parameters, rest) = best;
-    (motion.with_full_friction_at(rate), parameters, if rate > quiet { rest } else { sharp_rest })
+    let (rate, needs, rest) = best;
+    (motion.with_full_friction_at(rate), needs, if rate > quiet { rest } else { sharp_rest })
 }
 
 /// Root mean square of what the nominal model leaves.

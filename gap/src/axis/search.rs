@@ -255,7 +255,7 @@ impl Problem {
 
     /// What sets are compared by: their error and their effects; of an offset and an asymmetry that the log cannot tell
     /// apart, the offset.
-    fn key(&self, set: &Set) -> f64 {
+    pub(super) fn key(&self, set: &Set) -> f64 {
         let priced = self.price() * self.effects(&set.members) as f64;
         let asymmetry = |shape: &Shape| matches!(shape, Shape::Asymmetry | Shape::DragAsymmetry);
         let asymmetric = set.members.iter().any(|&member| asymmetry(&self.candidates[member].shape));

@@ -6,7 +6,7 @@ use super::balance::Balance;
 use super::judge::{Shrunk, by_block, shrunk};
 use super::library::{NOMINAL, Shape};
 use super::motion::BLOCKS;
-use super::plain::{needed, nominal};
+use super::plain::nominal;
 use super::ready::ready;
 use super::search::Set;
 use super::table::AxisLog;
@@ -29,7 +29,7 @@ pub(super) fn score(
         notes.push(format!("{name}: one of the logs is at rest and the other moves; not compared"));
         return Vec::new();
     }
-    motion.needed = needed(&motion, balance.needs);
+    motion.needed = balance.needs.at(&motion);
     (motion.middle, motion.size) = (balance.motion.middle, balance.motion.size);
     let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
     let parameters = nominal(model);

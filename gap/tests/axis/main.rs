@@ -7,6 +7,7 @@
     reason = "strokes are counted, rows are written line by line"
 )]
 
+mod arm;
 mod real;
 mod simulated;
 mod simulator;
