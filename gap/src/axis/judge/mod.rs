@@ -157,8 +157,10 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let rest = Rest::of(&shrunk);
     let verdict = if found.is_empty() {
         let effort = balance.motion.pick(&balance.motion.effort);
+        // blocks of a fast slip may stand out of what the parameters leave without being any part of the gap
+        let doubtful = doubt(rest, 0).max(unknown_probability) > UNEXPLAINED;
         let left = rest.over_noise > NO_NOISE && shrunk.after > NO_TRIFLE * rms(&effort)
-            || stands_out(&best.held_out, &by_block(&effort, &balance.motion), counts, floor);
+            || doubtful && stands_out(&best.held_out, &by_block(&effort, &balance.motion), counts, floor);
         if gap && (left || rest.share > 0.5 && !tolerated(balance, model)) {
             Verdict::Unexplained
         } else {
