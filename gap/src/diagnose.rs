@@ -106,8 +106,17 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         }
         Data::Doubtful(told, undone) => Some((told, undone)),
     };
-    read.quieten(&crate::library::platform(model));
+    let platform = crate::library::platform(model);
+    read.quieten(&platform);
+    read.hush(&read.predicted(&platform, &read.inputs));
     let mut whole = settled(&read, model);
+    // hum that the gap hid
+    let mut hushed = read.clone();
+    if hushed.hush(&whole.search.closest().prediction) {
+        drop(whole);
+        read = hushed;
+        whole = settled(&read, model);
+    }
     if let Some(touched) = touched(&whole) {
         drop(whole);
         read.touches(touched.level_rad, &touched.on_stop);

@@ -2,6 +2,7 @@
 
 mod channel;
 mod faults;
+mod hum;
 mod part;
 mod plateau;
 mod quiet;
@@ -14,9 +15,10 @@ use std::ops::Range;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
-use crate::simulate::{Begin, Inputs, Physics};
+use crate::simulate::{Begin, Inputs, Physics, Prediction, predict};
 pub use channel::{Channel, Signal};
 pub use faults::{Data, faults};
+use hum::without_hum;
 pub(crate) use part::BEGINNING_S;
 pub(crate) use plateau::{LEAST_STOP, peak_rad, plateau};
 pub use quiet::RateNoise;
@@ -92,7 +94,10 @@ impl Record {
             if let Some(stuck) = stuck::told(column.name(), values, period_s) {
                 faults.push(stuck);
             }
-            filled(&grid.place(values))
+            let mut values = filled(&grid.place(values));
+            let all = vec![true; values.len()];
+            notes.extend(without_hum(&mut values, &all, None, period_s).iter().map(|hum| hum.told(column)));
+            values
         };
         let accel_mps2 = [Column::AccelX, Column::AccelY, Column::AccelZ].map(&mut driven);
         let (rate_radps, cross_radps) = (driven(Column::VehicleRate), driven(Column::CrossRate));
@@ -151,6 +156,12 @@ impl Record {
     pub fn begin(&self, physics: &Physics, inputs: &Inputs) -> Begin {
         let first = |signal| self.channel(signal).and_then(|channel| channel.beginning(self.inputs.period_s));
         Begin::at(physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque))
+    }
+
+    /// What a platform shows that begins as the first rows do.
+    #[must_use]
+    pub fn predicted(&self, physics: &Physics, inputs: &Inputs) -> Prediction {
+        predict(physics, inputs, &self.begin(physics, inputs), usize::MAX)
     }
 
     /// Whether the float touches a stop, or may have.

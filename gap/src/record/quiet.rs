@@ -16,7 +16,7 @@ use crate::window::hann;
 
 use super::Record;
 use super::rough::rough;
-use crate::simulate::{Inputs, Physics, predict};
+use crate::simulate::{Inputs, Physics};
 
 /// Rows of a segment in which the spectrum is taken.
 const SEGMENT: usize = 2048;
@@ -46,7 +46,7 @@ impl Record {
 
     /// Third differences of each output's nominal misfit, squared and summed.
     fn misfit(&self, physics: &Physics, inputs: &Inputs) -> Vec<f64> {
-        let prediction = predict(physics, inputs, &self.begin(physics, inputs), usize::MAX);
+        let prediction = self.predicted(physics, inputs);
         let of = |channel: &super::Channel| {
             let predicted = crate::fit::predicted(channel.signal, &prediction);
             let off = |k: usize| channel.values[k] - predicted[k];

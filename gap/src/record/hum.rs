@@ -1,0 +1,238 @@
+//! Hum of a sensor: lines of the supply, 50 Hz or 60 Hz on the ground, 400 Hz on board, and their first multiples, no larger
+//! than its noise. It is that sensor's own; a torque that beats so would be a line of every output, and a larger one.
+//!
+//! ```text
+//! x(t) - A cos(2 pi f t) - B sin(2 pi f t)        A, B by least squares under Hann's window, f where they take most
+//! ```
+
+use std::f64::consts::{LN_2, TAU};
+
+use gimbal_log::Column;
+use realfft::RealFftPlanner;
+
+use super::{Record, filled};
+use crate::simulate::Prediction;
+use crate::window::hann;
+
+/// Frequencies of supplies, and how far one may be off [Hz], [1].
+const SUPPLIES: [(f64, f64); 3] = [(50.0, 0.004), (60.0, 0.004), (400.0, 0.02)];
+/// Multiples that are looked at.
+const MULTIPLES: [f64; 3] = [1.0, 2.0, 3.0];
+/// Highest frequency that is looked at, over the rate of rows.
+const HIGHEST: f64 = 0.49;
+/// Fewest rows in which a line can be told.
+const LEAST_ROWS: usize = 2048;
+/// Lines of the transform over one of the log's length.
+const FINER: usize = 4;
+/// Lines of the log's length that a line takes under the window, and about it those that show the noise there [Hz].
+const WIDE: f64 = 4.0;
+const AROUND_HZ: f64 = 4.0;
+/// What a line must stand out by, beyond chance [nats].
+const STANDS_OUT: f64 = 12.0;
+/// Power over that of the strongest line beside it; and of what is predicted at its place, over its own, at most.
+const ALONE: f64 = 2.5;
+const PREDICTED: f64 = 0.1;
+/// Amplitude at most, over the noise of a row.
+const LARGEST: f64 = 3.0;
+
+/// A line that was taken out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Hum {
+    pub(super) hz: f64,
+    pub(super) amplitude: f64,
+}
+
+impl Hum {
+    /// For the report.
+    pub(super) fn told(&self, column: Column) -> String {
+        format!("{} hums at {:.2} Hz with an amplitude of {:.1e}: taken out", column.name(), self.hz, self.amplitude)
+    }
+}
+
+impl Record {
+    /// Takes hum out of the outputs, where what a prediction leaves of them shows it; whether it does.
+    pub fn hush(&mut self, prediction: &Prediction) -> bool {
+        let mut any = false;
+        for channel in &mut self.channels {
+            let predicted = crate::fit::predicted(channel.signal, prediction);
+            let mut left: Vec<f64> = channel.values.iter().zip(predicted).map(|(value, own)| value - own).collect();
+            let found = without_hum(&mut left, &channel.valid, Some(predicted), self.inputs.period_s);
+            for (value, (left, own)) in channel.values.iter_mut().zip(left.iter().zip(predicted)) {
+                *value = left + own;
+            }
+            any |= !found.is_empty();
+            self.notes.extend(found.iter().map(|hum| hum.told(channel.signal.column())));
+        }
+        any
+    }
+}
+
+/// Takes hum out of a series, and tells its lines. Rows that do not count stay as they are. A line that what is predicted of
+/// the series has too is the platform's.
+pub(super) fn without_hum(values: &mut [f64], valid: &[bool], predicted: Option<&[f64]>, period_s: f64) -> Vec<Hum> {
+    if values.len() < LEAST_ROWS {
+        return Vec::new();
+    }
+    let mut missing: Vec<f64> = values.iter().zip(valid).map(|(v, valid)| if *valid { *v } else { f64::NAN }).collect();
+    missing = filled(&missing);
+    let mut series = Series { values: missing, window: hann(values.len()), period_s };
+    let mut found = Vec::new();
+    let Some(mut powers) = series.powers(&series.values) else { return found };
+    let own = predicted.and_then(|predicted| series.powers(predicted));
+    for (supply_hz, off) in SUPPLIES {
+        for hz in MULTIPLES.map(|multiple| multiple * supply_hz) {
+            let between_hz = [hz * (1.0 - off), hz * (1.0 + off)];
+            if between_hz[1] * period_s > HIGHEST {
+                continue;
+            }
+            let Some(line) = series.hum(&powers, between_hz) else { continue };
+            let near_hz = [line.hz - 0.5 * series.wide_hz(), line.hz + 0.5 * series.wide_hz()];
+            let moves = own.as_ref().and_then(|own| series.line(own, near_hz));
+            if moves.is_some_and(|moves| moves.power > PREDICTED * line.power) {
+                continue;
+            }
+            let hz = line.hz;
+            let [sine, cosine] = series.wave(hz);
+            for k in 0..values.len() {
+                let (sin, cos) = series.at(hz, k);
+                let own = sine * sin + cosine * cos;
+                series.values[k] -= own;
+                values[k] -= if valid[k] { own } else { 0.0 };
+            }
+            found.push(Hum { hz, amplitude: sine.hypot(cosine) });
+            let Some(without) = series.powers(&series.values) else { return found };
+            powers = without;
+        }
+    }
+    found
+}
+
+/// A series without gaps under a window.
+struct Series {
+    values: Vec<f64>,
+    window: Vec<f64>,
+    period_s: f64,
+}
+
+impl Series {
+    fn at(&self, hz: f64, row: usize) -> (f64, f64) {
+        (TAU * hz * row as f64 * self.period_s).sin_cos()
+    }
+
+    /// Amplitudes of sine and cosine of one frequency.
+    fn wave(&self, hz: f64) -> [f64; 2] {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (k, (value, window)) in self.values.iter().zip(&self.window).enumerate() {
+            let (sin, cos) = self.at(hz, k);
+            sine += window * value * sin;
+            cosine += window * value * cos;
+        }
+        [sine, cosine].map(|sum| 2.0 * sum / self.window.iter().sum::<f64>())
+    }
+
+    /// Frequencies of a transform under the window, and the power at each.
+    fn powers(&self, values: &[f64]) -> Option<Vec<(f64, f64)>> {
+        let length = FINER * values.len().next_power_of_two();
+        let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+        let sum: f64 = self.window.iter().sum();
+        let mean = values.iter().zip(&self.window).map(|(value, window)| value * window).sum::<f64>() / sum;
+        let mut padded = transform.make_input_vec();
+        for (place, (value, window)) in padded.iter_mut().zip(values.iter().zip(&self.window)) {
+            *place = window * (value - mean);
+        }
+        let mut lines = transform.make_output_vec();
+        transform.process(&mut padded, &mut lines).ok()?;
+        let step_hz = 1.0 / (length as f64 * self.period_s);
+        Some(lines.iter().enumerate().map(|(line, value)| (line as f64 * step_hz, value.norm_sqr())).collect())
+    }
+
+    /// The strongest line between two frequencies, if it may be hum: no larger than that, and none of many side by side, as a
+    /// motion has that comes again and again.
+    fn hum(&self, powers: &[(f64, f64)], between_hz: [f64; 2]) -> Option<Line> {
+        // (A sum w / 2)^2 over sigma^2 sum w^2
+        let sum: f64 = self.window.iter().sum();
+        let largest = (0.5 * LARGEST * sum).powi(2) / self.window.iter().map(|w| w * w).sum::<f64>();
+        let line = self.line(powers, between_hz)?;
+        (line.power < largest * line.noise && line.power > ALONE * line.beside).then_some(line)
+    }
+
+    /// The strongest line between two frequencies, if it stands out of the noise about it.
+    fn line(&self, powers: &[(f64, f64)], [from_hz, to_hz]: [f64; 2]) -> Option<Line> {
+        let within = (1..powers.len() - 1).filter(|&place| (from_hz..=to_hz).contains(&powers[place].0));
+        let best = within.max_by(|&a, &b| powers[a].1.total_cmp(&powers[b].1))?;
+        let power = powers[best].1;
+        // the top of the parabola through the logarithms about it
+        let [before, own, after] = [best - 1, best, best + 1].map(|place| powers[place].1.max(1e-300).ln());
+        let off = 0.5 * (before - after) / (before - 2.0 * own + after).min(-1e-12);
+        let hz = powers[best].0 + off.clamp(-0.5, 0.5) * (powers[1].0 - powers[0].0);
+        let aside = |other_hz: f64| (self.wide_hz()..AROUND_HZ).contains(&(other_hz - hz).abs());
+        let mut others: Vec<f64> = powers.iter().filter(|(hz, _)| aside(*hz)).map(|(_, power)| *power).collect();
+        if others.is_empty() {
+            return None;
+        }
+        let beside = others.iter().copied().fold(0.0, f64::max);
+        let middle = others.len() / 2;
+        // the median of a chi square of two degrees over its mean
+        let noise = (*others.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2).max(1e-300);
+        let independent = ((to_hz - from_hz) * self.values.len() as f64 * self.period_s).max(1.0);
+        (power / noise - independent.ln() > STANDS_OUT).then_some(Line { hz, power, noise, beside })
+    }
+
+    /// What a line takes of the transform, and no other may.
+    fn wide_hz(&self) -> f64 {
+        WIDE / (self.values.len() as f64 * self.period_s)
+    }
+}
+
+/// A line of a transform.
+struct Line {
+    hz: f64,
+    power: f64,
+    /// Power of noise about it, and of the strongest line there.
+    noise: f64,
+    beside: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    use super::without_hum;
+
+    fn series(amplitude: f64, hz: f64) -> Vec<f64> {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let slow = |t: f64| 3e3 * (TAU * 0.3 * t).sin();
+        let of = |k: u32| {
+            let t = 1e-3 * f64::from(k);
+            slow(t) + rng.sample::<f64, _>(StandardNormal) + amplitude * (TAU * hz * t + 0.4).sin()
+        };
+        (0..15_000).map(of).collect()
+    }
+
+    #[test]
+    fn closed_form_a_line_of_a_supply_is_taken_out_and_no_other() {
+        let valid: Vec<bool> = (0..15_000).map(|k| !(4000..4020).contains(&k)).collect();
+        for (amplitude, hz, lines) in
+            [(0.3, 50.02, 1), (0.5, 401.1, 1), (0.3, 149.95, 1), (0.0, 50.0, 0), (0.5, 55.0, 0), (8.0, 50.0, 0)]
+        {
+            let mut values = series(amplitude, hz);
+            let found = without_hum(&mut values, &valid, None, 1e-3);
+            assert_eq!(found.len(), lines, "{amplitude} at {hz}: {found:?}");
+            for hum in found {
+                assert!((hum.hz - hz).abs() < 0.02 && (hum.amplitude - amplitude).abs() < 0.04, "{hum:?}");
+                let left: f64 = series(0.0, hz)
+                    .iter()
+                    .zip(&values)
+                    .zip(&valid)
+                    .filter(|row| *row.1)
+                    .map(|((a, b), _)| (a - b).powi(2))
+                    .sum();
+                assert!((left / 14_980.0).sqrt() < 0.04, "{left}");
+            }
+        }
+    }
+}
