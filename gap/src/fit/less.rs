@@ -1,4 +1,4 @@
-//! Backwards from the best sets: without one of their members, or with a simpler one in its place.
+//! Backwards from the best sets: without one of their members, or with one in its place that is simpler or much like it.
 
 use gimbal_plant::Effect;
 use rayon::prelude::*;
@@ -19,7 +19,10 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
         .iter()
         .enumerate()
         .take(LOOKED_AT)
-        .flat_map(|(index, fit)| lesser(fit, index == 0).chain(straightened(problem, fit)).map(move |less| (fit, less)))
+        .flat_map(|(index, fit)| {
+            let others = straightened(problem, fit).into_iter().chain(late_otherwise(problem, fit));
+            lesser(fit, index == 0).chain(others).map(move |less| (fit, less))
+        })
         .collect::<Vec<_>>()
         .into_par_iter()
         .map(|(from, (set, values))| {
@@ -68,12 +71,32 @@ fn straightened(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
     let place = fit.effects.iter().position(|effect| *effect == "cable_hysteresis")?;
     let longest_rad = Effect::from_name("cable_hysteresis")?.parameters()[1].high;
     let &[torque_nm, displacement_rad, ..] = fit.values[place].as_slice() else { return None };
-    let spring = problem.candidates.iter().position(|candidate| candidate.effect == "cable_spring")?;
-    if displacement_rad < longest_rad || fit.effects.contains(&"cable_spring") {
+    if displacement_rad < longest_rad {
+        return None;
+    }
+    exchanged(problem, fit, place, "cable_spring", torque_nm / displacement_rad)
+}
+
+/// A set whose motor lags more than it should, with a delay of as long in its place, or the other way round: the one hides the other
+/// where nominal parameters make up for the rest.
+fn late_otherwise(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
+    let lag_s = problem.base.config.servo.motor_lag_s;
+    let at = |effect: &str| fit.effects.iter().position(|own| *own == effect);
+    let (place, instead, value) = match (at("motor_lag"), at("loop_delay")) {
+        (Some(place), None) => (place, "loop_delay", fit.values[place][0] * lag_s),
+        (None, Some(place)) => (place, "motor_lag", fit.values[place][0] / lag_s),
+        _ => return None,
+    };
+    if value > 0.0 { exchanged(problem, fit, place, instead, value) } else { None }
+}
+
+/// A set with another effect in the place of one, of such a size; none where it has that one, too.
+fn exchanged(problem: &Problem, fit: &Fit, place: usize, instead: &str, size: f64) -> Option<(Set, Vec<Vec<f64>>)> {
+    if fit.effects.contains(&instead) {
         return None;
     }
     let (mut set, mut values) = (fit.set.clone(), fit.values.clone());
-    set.0[place] = spring;
-    values[place] = vec![torque_nm / displacement_rad];
+    set.0[place] = problem.candidates.iter().position(|candidate| candidate.effect == instead)?;
+    values[place] = vec![size];
     Some((set, values))
 }
