@@ -73,36 +73,26 @@ pub(super) fn without_hum(values: &mut [f64], valid: &[bool], predicted: Option<
     if values.len() < LEAST_ROWS {
         return Vec::new();
     }
-    let mut missing: Vec<f64> = values.iter().zip(valid).map(|(v, valid)| if *valid { *v } else { f64::NAN }).collect();
-    missing = filled(&missing);
-    let mut series = Series { values: missing, window: hann(values.len()), period_s };
+    let known = values.iter().zip(valid).map(|(value, valid)| if *valid { *value } else { f64::NAN });
+    let series = filled(&known.collect::<Vec<f64>>());
+    let mut series = Series { values: series, window: hann(values.len()), period_s };
     let mut found = Vec::new();
     let Some(mut powers) = series.powers(&series.values) else { return found };
-    let own = predicted.and_then(|predicted| series.powers(predicted));
+    let moves = predicted.and_then(|predicted| series.powers(predicted));
     for (supply_hz, off) in SUPPLIES {
         for hz in MULTIPLES.map(|multiple| multiple * supply_hz) {
             let between_hz = [hz * (1.0 - off), hz * (1.0 + off)];
             if between_hz[1] * period_s > HIGHEST {
                 continue;
             }
-            let Some(line) = series.hum(&powers, between_hz) else { continue };
-            let near_hz = [line.hz - 0.5 * series.wide_hz(), line.hz + 0.5 * series.wide_hz()];
-            let moves = own.as_ref().and_then(|own| series.line(own, near_hz));
-            if moves.is_some_and(|moves| moves.power > PREDICTED * line.power) {
-                continue;
-            }
-            let hz = line.hz;
-            let [sine, cosine] = series.wave(hz);
-            for k in 0..values.len() {
-                let (sin, cos) = series.at(hz, k);
-                let own = sine * sin + cosine * cos;
-                series.values[k] -= own;
-                values[k] -= if valid[k] { own } else { 0.0 };
-            }
-            found.push(Hum { hz, amplitude: sine.hypot(cosine) });
-            let Some(without) = series.powers(&series.values) else { return found };
+            let Some(line) = series.hum(&powers, moves.as_deref(), between_hz) else { continue };
+            found.push(series.take_out(line.hz));
+            let Some(without) = series.powers(&series.values) else { break };
             powers = without;
         }
+    }
+    for (value, (own, _)) in values.iter_mut().zip(series.values.iter().zip(valid)).filter(|(_, (_, valid))| **valid) {
+        *value = *own;
     }
     found
 }
@@ -115,19 +105,21 @@ struct Series {
 }
 
 impl Series {
-    fn at(&self, hz: f64, row: usize) -> (f64, f64) {
-        (TAU * hz * row as f64 * self.period_s).sin_cos()
-    }
-
-    /// Amplitudes of sine and cosine of one frequency.
-    fn wave(&self, hz: f64) -> [f64; 2] {
+    /// Takes a line of one frequency out.
+    fn take_out(&mut self, hz: f64) -> Hum {
+        let (period_s, weight) = (self.period_s, self.window.iter().sum::<f64>());
+        let wave = |k: usize| (TAU * hz * k as f64 * period_s).sin_cos();
         let (mut sine, mut cosine) = (0.0, 0.0);
         for (k, (value, window)) in self.values.iter().zip(&self.window).enumerate() {
-            let (sin, cos) = self.at(hz, k);
-            sine += window * value * sin;
-            cosine += window * value * cos;
+            let (sin, cos) = wave(k);
+            sine += 2.0 * window * value * sin / weight;
+            cosine += 2.0 * window * value * cos / weight;
         }
-        [sine, cosine].map(|sum| 2.0 * sum / self.window.iter().sum::<f64>())
+        for (k, value) in self.values.iter_mut().enumerate() {
+            let (sin, cos) = wave(k);
+            *value -= sine * sin + cosine * cos;
+        }
+        Hum { hz, amplitude: sine.hypot(cosine) }
     }
 
     /// Frequencies of a transform under the window, and the power at each.
@@ -146,14 +138,17 @@ impl Series {
         Some(lines.iter().enumerate().map(|(line, value)| (line as f64 * step_hz, value.norm_sqr())).collect())
     }
 
-    /// The strongest line between two frequencies, if it may be hum: no larger than that, and none of many side by side, as a
-    /// motion has that comes again and again.
-    fn hum(&self, powers: &[(f64, f64)], between_hz: [f64; 2]) -> Option<Line> {
+    /// The strongest line between two frequencies, if it may be hum: no larger than that, none of many side by side, as a motion
+    /// has that comes again and again, and none that what moves has, too.
+    fn hum(&self, powers: &[(f64, f64)], moves: Option<&[(f64, f64)]>, between_hz: [f64; 2]) -> Option<Line> {
         // (A sum w / 2)^2 over sigma^2 sum w^2
         let sum: f64 = self.window.iter().sum();
         let largest = (0.5 * LARGEST * sum).powi(2) / self.window.iter().map(|w| w * w).sum::<f64>();
         let line = self.line(powers, between_hz)?;
-        (line.power < largest * line.noise && line.power > ALONE * line.beside).then_some(line)
+        let near_hz = [line.hz - 0.5 * self.wide_hz(), line.hz + 0.5 * self.wide_hz()];
+        let moved = moves.and_then(|moves| self.line(moves, near_hz)).map_or(0.0, |moved| moved.power);
+        let small = line.power < largest * line.noise;
+        (small && line.power > ALONE * line.beside && moved <= PREDICTED * line.power).then_some(line)
     }
 
     /// The strongest line between two frequencies, if it stands out of the noise about it.
