@@ -106,13 +106,10 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         }
         Data::Doubtful(told, undone) => Some((told, undone)),
     };
-    let platform = crate::library::platform(model);
-    read.quieten(&platform);
-    read.hush(&read.predicted(&platform, &read.inputs));
+    read.quieten(&crate::library::platform(model));
     let mut whole = settled(&read, model);
     // hum that the gap hid
-    let mut hushed = read.clone();
-    if hushed.hush(&whole.search.closest().prediction) {
+    if let Some(hushed) = read.hushed(&whole.search.closest().prediction) {
         drop(whole);
         read = hushed;
         whole = settled(&read, model);

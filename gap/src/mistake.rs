@@ -17,9 +17,7 @@ const LESS: f64 = 0.05;
 /// Whether the mistake explains a log better than the library does: nothing is wrong with the undone log and it leaves no
 /// more, or it leaves less.
 pub(crate) fn mistaken(as_it_is: &Settled, mut undone: Record, model: &ModelFile) -> bool {
-    let platform = crate::library::platform(model);
-    undone.quieten(&platform);
-    undone.hush(&undone.predicted(&platform, &undone.inputs));
+    undone.quieten(&crate::library::platform(model));
     let mended = settled(&undone, model);
     let nothing_wrong = decide(&mended.problem, &mended.search, &model.tolerance).verdict == Verdict::NoGap;
     let margin = LESS * undone.channels.len() as f64;

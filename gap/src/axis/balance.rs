@@ -53,29 +53,31 @@ impl Balance {
     /// parameters lack may look like a rounder corner: where another one leaves less beside what is found, all is looked for
     /// once more.
     pub(super) fn searched(motion: Motion, model: &AxisModel) -> (Self, Set) {
-        let mut balance = Self::new(motion.clone(), model, &[]);
+        let mut balance = Self::new(rounded(motion.clone(), &[]), model, &[]);
         let set = balance.search(model);
         // plain least squares have the nominal parameters already
         let added = |shape: &&Shape| **shape != Shape::Scale && !NOMINAL.contains(shape) && !shape.hangs_on_effort();
         let shapes = set.members.iter().map(|&member| &balance.problem.candidates[member].shape);
         let found: Vec<Shape> = shapes.filter(added).cloned().collect();
-        let (beside, needs, _) = rounded(motion.clone(), &found);
-        let as_round = beside.full_at.to_bits() == balance.motion.full_at.to_bits();
-        if found.is_empty() || as_round && needs.share_of_effects(&beside) < MUCH_NEEDED {
+        if found.is_empty() {
             return (balance, set);
         }
-        let mut again = Self::new(motion, model, &found);
+        let beside = rounded(motion, &found);
+        let as_round = beside.0.full_at.to_bits() == balance.motion.full_at.to_bits();
+        if as_round && beside.1.share_of_effects(&beside.0) < MUCH_NEEDED {
+            return (balance, set);
+        }
+        let mut again = Self::new(beside, model, &found);
         let other = again.search(model);
         if again.problem.key(&other) < balance.problem.key(&set) { (again, other) } else { (balance, set) }
     }
 
     /// Makes the balance and every column, friction's corner as it is beside some effects.
-    fn new(motion: Motion, model: &AxisModel, beside: &[Shape]) -> Self {
-        let (mut motion, found, rest) = rounded(motion, beside);
+    fn new((mut motion, found, rest): (Motion, Needs, f64), model: &AxisModel, beside: &[Shape]) -> Self {
         let needs = if motion.stands { Needs::friction(model.coulomb) } else { found };
         motion.needed = needs.at(&motion);
         motion.size = rms(&motion.needed).max(1e-30);
-        let needed_of = columns_of(&motion, beside);
+        let needed_of = (!beside.is_empty()).then(|| columns_of(&motion, beside));
         let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
         let effort = motion.raw(&motion.effort);
         let parameters = nominal(model);
@@ -123,10 +125,10 @@ impl Balance {
             let released = candidate.shape == Shape::Scale || NOMINAL.contains(&candidate.shape);
             let base: Vec<usize> = (0..3).collect();
             let kept = candidate.columns.iter().map(|&column| grams.keeps(column, &base)).fold(0.0, f64::max);
-            let disguised = !beside.is_empty() && candidate.shape.hangs_on_effort() && {
+            let disguised = needed_of.as_ref().filter(|_| candidate.shape.hangs_on_effort()).is_some_and(|others| {
                 let own = candidate.columns.iter().map(|&column| columns[column].clone());
-                own.map(|column| kept_of(column, &needed_of, &motion)).fold(0.0, f64::max) < LEAST_ITS_OWN
-            };
+                own.map(|column| kept_of(column, others, &motion)).fold(0.0, f64::max) < LEAST_ITS_OWN
+            });
             let shows = released || kept > LEAST_KEPT && !disguised;
             if !shows {
                 hidden.push(candidate.shape.effect());

@@ -19,7 +19,7 @@ pub(super) fn nominal(model: &AxisModel) -> [f64; 3] {
 
 /// What a motion needs of effort: the nominal parameters and a constant; where something else acts on the axis, gravity for
 /// one, all that was found.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Needs {
     parameters: [f64; 4],
     effects: Vec<(Shape, Vec<f64>)>,
@@ -68,17 +68,18 @@ pub(super) fn columns(motion: &Motion, beside: &[Shape]) -> Vec<Vec<f64>> {
 }
 
 fn fitted(motion: &Motion, beside: &[Shape], effort: &[f64]) -> (Needs, f64) {
-    let columns = columns(motion, beside);
+    let groups: Vec<Vec<Vec<f64>>> = beside.iter().map(|shape| shape.on_grid(motion)).collect();
+    let widths: Vec<usize> = groups.iter().map(Vec::len).collect();
+    let mut columns = columns(motion, &[]);
+    columns.extend(groups.into_iter().flatten());
     let grams = Grams::new(&columns, effort, &motion.block);
     let all: Vec<usize> = (0..columns.len()).collect();
     let fit = grams.fit(&all);
     let rest = (grams.square_of_fit(&all) / effort.len().max(1) as f64).sqrt();
+    let acts = beside.iter().any(|shape| shape.block() == "disturbance");
     let mut amplitudes = fit[4..].iter().copied();
-    let of = |shape: &Shape| (shape.clone(), amplitudes.by_ref().take(shape.columns(motion).len()).collect());
-    let mut effects: Vec<(Shape, Vec<f64>)> = beside.iter().map(of).collect();
-    if !beside.iter().any(|shape| shape.block() == "disturbance") {
-        effects.clear();
-    }
+    let own = |(shape, width): (&Shape, usize)| (shape.clone(), amplitudes.by_ref().take(width).collect());
+    let effects = if acts { beside.iter().zip(widths).map(own).collect() } else { Vec::new() };
     (Needs { parameters: [fit[0], fit[1], fit[2], fit[3]], effects }, rest)
 }
 

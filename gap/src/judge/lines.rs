@@ -12,6 +12,7 @@ use realfft::num_complex::Complex;
 use super::group::{Group, On};
 use super::on_float::{driven, gain};
 use crate::fit::Problem;
+use crate::window::spectrum;
 
 /// Frequencies that are looked at [Hz]: no slower than two periods of the log.
 const FROM_PERIODS: f64 = 2.0;
@@ -62,16 +63,6 @@ pub(super) fn line(problem: &Problem, drive: &[f64], carrier: &Carrier) -> Optio
     Some(Group { of: carrier.of, series, on: carrier.on, choice })
 }
 
-/// Power of the lines of a series with zeros up to a length.
-fn spectrum(series: &[f64], length: usize) -> Option<Vec<f64>> {
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut padded = transform.make_input_vec();
-    padded[..series.len()].copy_from_slice(series);
-    let mut lines = transform.make_output_vec();
-    transform.process(&mut padded, &mut lines).ok()?;
-    Some(lines.iter().map(Complex::norm_sqr).collect())
-}
-
 /// A spectrum spread about every line by another, `sum over all f' of a(f - f') b(f') / length`.
 fn spread(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
     let length = 2 * (a.len() - 1);
@@ -91,7 +82,8 @@ fn spread(a: &[f64], b: &[f64]) -> Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{spectrum, spread};
+    use super::spread;
+    use crate::window::spectrum;
 
     #[test]
     fn closed_form_what_does_not_beat_spreads_nothing() {

@@ -8,11 +8,10 @@
 use std::f64::consts::{LN_2, TAU};
 
 use gimbal_log::Column;
-use realfft::RealFftPlanner;
 
 use super::{Record, filled};
 use crate::simulate::Prediction;
-use crate::window::hann;
+use crate::window::{hann, spectrum};
 
 /// Frequencies of supplies, and how far one may be off [Hz], [1].
 const SUPPLIES: [(f64, f64); 3] = [(50.0, 0.004), (60.0, 0.004), (400.0, 0.02)];
@@ -50,20 +49,21 @@ impl Hum {
 }
 
 impl Record {
-    /// Takes hum out of the outputs, where what a prediction leaves of them shows it; whether it does.
-    pub fn hush(&mut self, prediction: &Prediction) -> bool {
-        let mut any = false;
-        for channel in &mut self.channels {
+    /// The record without hum in its outputs, where what a prediction leaves of them shows any.
+    pub(crate) fn hushed(&self, prediction: &Prediction) -> Option<Self> {
+        let mut hushed: Option<Self> = None;
+        for (place, channel) in self.channels.iter().enumerate() {
             let predicted = crate::fit::predicted(channel.signal, prediction);
             let mut left: Vec<f64> = channel.values.iter().zip(predicted).map(|(value, own)| value - own).collect();
             let found = without_hum(&mut left, &channel.valid, Some(predicted), self.inputs.period_s);
-            for (value, (left, own)) in channel.values.iter_mut().zip(left.iter().zip(predicted)) {
-                *value = left + own;
+            if found.is_empty() {
+                continue;
             }
-            any |= !found.is_empty();
-            self.notes.extend(found.iter().map(|hum| hum.told(channel.signal.column())));
+            let hushed = hushed.get_or_insert_with(|| self.clone());
+            hushed.channels[place].values = left.iter().zip(predicted).map(|(left, own)| left + own).collect();
+            hushed.notes.extend(found.iter().map(|hum| hum.told(channel.signal.column())));
         }
-        any
+        hushed
     }
 }
 
@@ -122,25 +122,23 @@ impl Series {
         Hum { hz, amplitude: sine.hypot(cosine) }
     }
 
-    /// Frequencies of a transform under the window, and the power at each.
-    fn powers(&self, values: &[f64]) -> Option<Vec<(f64, f64)>> {
-        let length = FINER * values.len().next_power_of_two();
-        let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    /// Power of values over frequency, under the window.
+    fn powers(&self, values: &[f64]) -> Option<Vec<f64>> {
         let sum: f64 = self.window.iter().sum();
         let mean = values.iter().zip(&self.window).map(|(value, window)| value * window).sum::<f64>() / sum;
-        let mut padded = transform.make_input_vec();
-        for (place, (value, window)) in padded.iter_mut().zip(values.iter().zip(&self.window)) {
-            *place = window * (value - mean);
-        }
-        let mut lines = transform.make_output_vec();
-        transform.process(&mut padded, &mut lines).ok()?;
-        let step_hz = 1.0 / (length as f64 * self.period_s);
-        Some(lines.iter().enumerate().map(|(line, value)| (line as f64 * step_hz, value.norm_sqr())).collect())
+        let tapered: Vec<f64> =
+            values.iter().zip(&self.window).map(|(value, window)| window * (value - mean)).collect();
+        spectrum(&tapered, self.length())
+    }
+
+    /// Rows of a transform.
+    fn length(&self) -> usize {
+        FINER * self.values.len().next_power_of_two()
     }
 
     /// The strongest line between two frequencies, if it may be hum: no larger than that, none of many side by side, as a motion
     /// has that comes again and again, and none that what moves has, too.
-    fn hum(&self, powers: &[(f64, f64)], moves: Option<&[(f64, f64)]>, between_hz: [f64; 2]) -> Option<Line> {
+    fn hum(&self, powers: &[f64], moves: Option<&[f64]>, between_hz: [f64; 2]) -> Option<Line> {
         // (A sum w / 2)^2 over sigma^2 sum w^2
         let sum: f64 = self.window.iter().sum();
         let largest = (0.5 * LARGEST * sum).powi(2) / self.window.iter().map(|w| w * w).sum::<f64>();
@@ -152,16 +150,24 @@ impl Series {
     }
 
     /// The strongest line between two frequencies, if it stands out of the noise about it.
-    fn line(&self, powers: &[(f64, f64)], [from_hz, to_hz]: [f64; 2]) -> Option<Line> {
-        let within = (1..powers.len() - 1).filter(|&place| (from_hz..=to_hz).contains(&powers[place].0));
-        let best = within.max_by(|&a, &b| powers[a].1.total_cmp(&powers[b].1))?;
-        let power = powers[best].1;
+    fn line(&self, powers: &[f64], [from_hz, to_hz]: [f64; 2]) -> Option<Line> {
+        let step_hz = 1.0 / (self.length() as f64 * self.period_s);
+        let at = |place: usize| place as f64 * step_hz;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
+        let places = |from_hz: f64, to_hz: f64| {
+            (from_hz / step_hz).max(1.0) as usize..((to_hz / step_hz) as usize + 2).min(powers.len())
+        };
+        let inside = |place: &usize| (from_hz..=to_hz).contains(&at(*place)) && place + 1 < powers.len();
+        let within = places(from_hz, to_hz).filter(inside);
+        let best = within.max_by(|&a, &b| powers[a].total_cmp(&powers[b]))?;
+        let power = powers[best];
         // the top of the parabola through the logarithms about it
-        let [before, own, after] = [best - 1, best, best + 1].map(|place| powers[place].1.max(1e-300).ln());
+        let [before, own, after] = [best - 1, best, best + 1].map(|place| powers[place].max(1e-300).ln());
         let off = 0.5 * (before - after) / (before - 2.0 * own + after).min(-1e-12);
-        let hz = powers[best].0 + off.clamp(-0.5, 0.5) * (powers[1].0 - powers[0].0);
-        let aside = |other_hz: f64| (self.wide_hz()..AROUND_HZ).contains(&(other_hz - hz).abs());
-        let mut others: Vec<f64> = powers.iter().filter(|(hz, _)| aside(*hz)).map(|(_, power)| *power).collect();
+        let hz = at(best) + off.clamp(-0.5, 0.5) * step_hz;
+        let aside = |place: &usize| (self.wide_hz()..AROUND_HZ).contains(&(at(*place) - hz).abs());
+        let mut others: Vec<f64> =
+            places(hz - AROUND_HZ, hz + AROUND_HZ).filter(aside).map(|place| powers[place]).collect();
         if others.is_empty() {
             return None;
         }

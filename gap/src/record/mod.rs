@@ -15,7 +15,7 @@ use std::ops::Range;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
-use crate::simulate::{Begin, Inputs, Physics, Prediction, predict};
+use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
 pub use faults::{Data, faults};
 use hum::without_hum;
@@ -156,12 +156,6 @@ impl Record {
     pub fn begin(&self, physics: &Physics, inputs: &Inputs) -> Begin {
         let first = |signal| self.channel(signal).and_then(|channel| channel.beginning(self.inputs.period_s));
         Begin::at(physics, inputs, first(Signal::GyroAngle).unwrap_or(0.0), first(Signal::MotorTorque))
-    }
-
-    /// What a platform shows that begins as the first rows do.
-    #[must_use]
-    pub fn predicted(&self, physics: &Physics, inputs: &Inputs) -> Prediction {
-        predict(physics, inputs, &self.begin(physics, inputs), usize::MAX)
     }
 
     /// Whether the float touches a stop, or may have.

@@ -16,7 +16,7 @@ use crate::window::hann;
 
 use super::Record;
 use super::rough::rough;
-use crate::simulate::{Inputs, Physics};
+use crate::simulate::{Inputs, Physics, Prediction, predict};
 
 /// Rows of a segment in which the spectrum is taken.
 const SEGMENT: usize = 2048;
@@ -31,24 +31,40 @@ const BETTER: f64 = 0.995;
 const APART: usize = 8;
 
 impl Record {
-    /// Filters the rate where that brings the prediction closer.
+    /// Takes out what sensors add, where the outputs show it: noise of the rate, and hum.
     pub fn quieten(&mut self, physics: &Physics) {
-        let Some((rate_radps, pass)) = filtered(&self.inputs.rate_radps) else { return };
-        let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
-        inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
-        let (as_logged, quiet) = (self.misfit(physics, &self.inputs), self.misfit(physics, &inputs));
-        let ratios: Vec<f64> = quiet.iter().zip(&as_logged).map(|(quiet, logged)| quiet / logged).collect();
-        if ratios.iter().all(|ratio| *ratio < 2.0 - BETTER) && ratios.iter().any(|ratio| *ratio < BETTER) {
-            self.inputs = inputs;
-            self.rate_noise.pass = pass;
+        let nominal = self.filter_rate(physics);
+        if let Some(hushed) = self.hushed(&nominal) {
+            *self = hushed;
         }
     }
 
-    /// Third differences of each output's nominal misfit, squared and summed.
-    fn misfit(&self, physics: &Physics, inputs: &Inputs) -> Vec<f64> {
-        let prediction = self.predicted(physics, inputs);
+    /// Filters the rate where that brings the prediction closer, and tells what is predicted then.
+    fn filter_rate(&mut self, physics: &Physics) -> Prediction {
+        let as_logged = self.predicted(physics, &self.inputs);
+        let Some((rate_radps, pass)) = filtered(&self.inputs.rate_radps) else { return as_logged };
+        let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
+        inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
+        let quiet = self.predicted(physics, &inputs);
+        let (before, after) = (self.misfit(&as_logged), self.misfit(&quiet));
+        let ratios: Vec<f64> = after.iter().zip(&before).map(|(after, before)| after / before).collect();
+        if ratios.iter().all(|ratio| *ratio < 2.0 - BETTER) && ratios.iter().any(|ratio| *ratio < BETTER) {
+            self.inputs = inputs;
+            self.rate_noise.pass = pass;
+            return quiet;
+        }
+        as_logged
+    }
+
+    /// What a platform shows that begins as the first rows do.
+    fn predicted(&self, physics: &Physics, inputs: &Inputs) -> Prediction {
+        predict(physics, inputs, &self.begin(physics, inputs), usize::MAX)
+    }
+
+    /// Third differences of each output's misfit, squared and summed.
+    fn misfit(&self, prediction: &Prediction) -> Vec<f64> {
         let of = |channel: &super::Channel| {
-            let predicted = crate::fit::predicted(channel.signal, &prediction);
+            let predicted = crate::fit::predicted(channel.signal, prediction);
             let off = |k: usize| channel.values[k] - predicted[k];
             let all = |k: &usize| (0..4).all(|step| channel.valid[k - step * APART]);
             let third = |k: usize| off(k) - 3.0 * (off(k - APART) - off(k - 2 * APART)) - off(k - 3 * APART);
