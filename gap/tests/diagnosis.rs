@@ -9,6 +9,7 @@ use gimbal_gap::{Diagnosis, diagnose};
 use gimbal_log::{Column, Log};
 use gimbal_model_file::ModelFile;
 use gimbal_plant::Effect;
+use gimbal_servo::Config;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use serde_json::Value;
@@ -309,4 +310,38 @@ fn turns_of_a_platform_anywhere_in_its_tolerance_show_nothing() {
         let diagnosis = diagnose(&log, &ModelFile::default());
         assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{seed}: {:?}", names(&diagnosis));
     }
+}
+
+/// Its lines are in what drives the platform, whatever their frequency.
+#[test]
+fn vibration_near_a_frequency_of_the_mains_is_no_hum() {
+    for seed in [710_005, 710_008] {
+        let (platform, effects) = corpus::anywhere(seed);
+        let case = Case { seed, excitation: Excitation::Flight, seconds: SECONDS, effects, drift: 0.0, noise: 1.0 };
+        let diagnosis =
+            diagnose(&as_log(&corpus::simulate_platform(&case, &platform).converted()), &ModelFile::default());
+        assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{seed}: {:#}", report(&diagnosis)["notes"]);
+    }
+}
+
+/// With `phi' + e w_x` for `phi'`, which the gyro sees, the equations are those of a platform whose vehicle turns by `e w_x` more
+/// and on which the torque `Jg e w_x'` acts.
+#[test]
+fn a_gyro_out_of_line_goes_with_the_cross_rate() {
+    let off_rad = 1e-4;
+    let platform = corpus::drifted(&Config::consistent(), 0.6, 23);
+    let mut rows = corpus::rows(Excitation::Manoeuvre, SECONDS, 23);
+    let cross: Vec<f64> = rows.iter().map(|row| row.cross_rate_radps).collect();
+    for (k, row) in rows.iter_mut().enumerate() {
+        let (before, after) = (cross[k.saturating_sub(1)], cross[(k + 1).min(cross.len() - 1)]);
+        row.vehicle_rate_radps += off_rad * cross[k];
+        row.torque_nm += platform.servo.gimbal_inertia_kg_m2 * off_rad * (after - before) / 2e-3;
+    }
+    let mut log = as_log(&corpus::simulate_rows(&rows, &platform, &[], 1.0, &mut corpus::rng(23, 3)).converted());
+    let rate_radps = log.column(Column::VehicleRate).expect("the rate").iter().zip(&cross);
+    log.set(Column::VehicleRate, rate_radps.map(|(rate, cross)| rate - off_rad * cross).collect());
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(report(&diagnosis)["verdict"], "unexplained", "{:?}", names(&diagnosis));
+    let decision = diagnosis.decision.as_ref().expect("a decision");
+    assert_eq!(decision.goes_with().map(|stranger| stranger.of), Some("cross rate, to the gyro"));
 }

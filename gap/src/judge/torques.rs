@@ -14,6 +14,8 @@ const UNIT_RADPS: f64 = 1e-4;
 const YIELDS_RAD: [f64; 5] = [3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 /// Times for which an angle is remembered [s].
 const REMEMBERED_S: [f64; 4] = [0.3, 1.0, 4.0, 15.0];
+/// Time over which a change of the cross rate is taken, for its noise [s].
+const QUICK_S: f64 = 0.01;
 /// Time constant of a motor's heat [s].
 const HEAT_S: f64 = 5.0;
 /// Torque over its rms within which its sign is no step.
@@ -23,7 +25,8 @@ const SOFT: f64 = 0.02;
 /// most of the time and as it does not; and what it takes of slow ones, as it wanders [nats].
 const WARY_NATS: [f64; 2] = [18.0, 0.0];
 const WANDERS_NATS: [f64; 2] = [40.0, 12.0];
-const SLOW: [&str; 2] = ["time", "specific force"];
+const SLOW: [&str; 3] = ["time", "specific force", TO_THE_GYRO];
+const TO_THE_GYRO: &str = "cross rate, to the gyro";
 
 type Series = Vec<f64>;
 type Functions = (&'static str, Vec<Series>);
@@ -157,12 +160,25 @@ impl<'a> Motion<'a> {
         groups
     }
 
-    /// Torques on the float: of its angle, of that and specific force.
+    /// Torques on the float: of its angle, of that and specific force; of which way it turns; of the cross rate, which a gyro
+    /// out of line sees, of how fast that changes, as the float's inertia about its axis feels it, and of its product with
+    /// the slip rate.
     fn of_float(&self) -> Vec<Functions> {
         let float = &self.float;
         let angles = [float.clone(), even(float, 2.0), odd(float, 2.0), odd(float, 3.0)];
         let tilted = self.accel.each_ref().map(|axis| product(axis, float));
-        vec![("gyro angle", angles.to_vec()), ("gyro angle and specific force", tilted.to_vec())]
+        let turns = scaled(&changes(float));
+        let way = turns.iter().map(|rate| (rate / SOFT).clamp(-1.0, 1.0)).collect();
+        let mut groups = vec![
+            ("gyro angle", angles.to_vec()),
+            ("gyro angle and specific force", tilted.to_vec()),
+            ("which way the float turns", vec![way, even(&turns, 1.0)]),
+        ];
+        if let Some(cross) = &self.cross {
+            let quickly = changes(&self.followed(cross, QUICK_S));
+            groups.push((TO_THE_GYRO, vec![cross.clone(), quickly, product(cross, &self.slip)]));
+        }
+        groups
     }
 
     /// Errors of a sensor: of what it reads, and of how fast that changes, as one that answers late has.

@@ -4,13 +4,16 @@
 //! ```text
 //! x(t) - A cos(2 pi f t) - B sin(2 pi f t)        A, B by least squares under Hann's window, f where they take most
 //! ```
+//!
+//! A line of an input may be the vehicle's vibration. The outputs tell: what drives the platform is in them, hum of an
+//! input is in what the prediction leaves of them.
 
 use std::f64::consts::{LN_2, TAU};
 
 use gimbal_log::Column;
 
 use super::{Record, filled};
-use crate::simulate::Prediction;
+use crate::simulate::{Inputs, Physics, Prediction};
 use crate::window::{hann, spectrum};
 
 /// Frequencies of supplies, and how far one may be off [Hz], [1].
@@ -48,7 +51,49 @@ impl Hum {
     }
 }
 
+/// Inputs that may hum.
+const DRIVEN: [Column; 5] = [Column::AccelX, Column::AccelY, Column::AccelZ, Column::VehicleRate, Column::CrossRate];
+
 impl Record {
+    /// Takes hum out of each input where a prediction without it leaves less of its lines in the outputs; what is predicted
+    /// then.
+    pub(super) fn hush_inputs(&mut self, physics: &Physics, as_logged: Prediction) -> Prediction {
+        let mut nominal = as_logged;
+        for column in DRIVEN {
+            let mut inputs = self.inputs.clone();
+            let own = driven(&mut inputs, column);
+            let all = vec![true; own.len()];
+            let found = without_hum(own, &all, None, self.inputs.period_s);
+            if found.is_empty() {
+                continue;
+            }
+            inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
+            let without = self.predicted(physics, &inputs);
+            if self.lines_left(&nominal, &found) - self.lines_left(&without, &found) > STANDS_OUT {
+                self.notes.extend(found.iter().map(|hum| hum.told(column)));
+                (self.inputs, nominal) = (inputs, without);
+            }
+        }
+        nominal
+    }
+
+    /// Power of lines in what a prediction leaves of the outputs, over the noise about them, summed [nats].
+    fn lines_left(&self, prediction: &Prediction, lines: &[Hum]) -> f64 {
+        let of = |channel: &super::Channel| {
+            let predicted = crate::fit::predicted(channel.signal, prediction);
+            let left = channel.values.iter().zip(predicted).map(|(value, own)| value - own);
+            let left: Vec<f64> =
+                left.zip(&channel.valid).map(|(left, valid)| if *valid { left } else { 0.0 }).collect();
+            let series = Series { window: hann(left.len()), values: left, period_s: self.inputs.period_s };
+            let powers = series.powers(&series.values).unwrap_or_default();
+            let over = |hum: &Hum| {
+                series.strongest(&powers, series.near_hz(hum.hz)).map_or(0.0, |line| line.power / line.noise)
+            };
+            lines.iter().map(over).sum::<f64>()
+        };
+        self.channels.iter().map(of).sum()
+    }
+
     /// The record without hum in its outputs, where what a prediction leaves of them shows any.
     pub(crate) fn hushed(&self, prediction: &Prediction) -> Option<Self> {
         let mut hushed: Option<Self> = None;
@@ -64,6 +109,17 @@ impl Record {
             hushed.notes.extend(found.iter().map(|hum| hum.told(channel.signal.column())));
         }
         hushed
+    }
+}
+
+/// An input by its column.
+fn driven(inputs: &mut Inputs, column: Column) -> &mut Vec<f64> {
+    match column {
+        Column::AccelX => &mut inputs.accel_mps2[0],
+        Column::AccelY => &mut inputs.accel_mps2[1],
+        Column::AccelZ => &mut inputs.accel_mps2[2],
+        Column::CrossRate => &mut inputs.cross_radps,
+        _ => &mut inputs.rate_radps,
     }
 }
 
@@ -143,14 +199,20 @@ impl Series {
         let sum: f64 = self.window.iter().sum();
         let largest = (0.5 * LARGEST * sum).powi(2) / self.window.iter().map(|w| w * w).sum::<f64>();
         let line = self.line(powers, between_hz)?;
-        let near_hz = [line.hz - 0.5 * self.wide_hz(), line.hz + 0.5 * self.wide_hz()];
-        let moved = moves.and_then(|moves| self.line(moves, near_hz)).map_or(0.0, |moved| moved.power);
+        let moved = moves.and_then(|moves| self.line(moves, self.near_hz(line.hz))).map_or(0.0, |moved| moved.power);
         let small = line.power < largest * line.noise;
         (small && line.power > ALONE * line.beside && moved <= PREDICTED * line.power).then_some(line)
     }
 
     /// The strongest line between two frequencies, if it stands out of the noise about it.
-    fn line(&self, powers: &[f64], [from_hz, to_hz]: [f64; 2]) -> Option<Line> {
+    fn line(&self, powers: &[f64], between_hz: [f64; 2]) -> Option<Line> {
+        let line = self.strongest(powers, between_hz)?;
+        let independent = ((between_hz[1] - between_hz[0]) * self.values.len() as f64 * self.period_s).max(1.0);
+        (line.power / line.noise - independent.ln() > STANDS_OUT).then_some(line)
+    }
+
+    /// The strongest line between two frequencies.
+    fn strongest(&self, powers: &[f64], [from_hz, to_hz]: [f64; 2]) -> Option<Line> {
         let step_hz = 1.0 / (self.length() as f64 * self.period_s);
         let at = |place: usize| place as f64 * step_hz;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
@@ -175,13 +237,17 @@ impl Series {
         let middle = others.len() / 2;
         // the median of a chi square of two degrees over its mean
         let noise = (*others.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2).max(1e-300);
-        let independent = ((to_hz - from_hz) * self.values.len() as f64 * self.period_s).max(1.0);
-        (power / noise - independent.ln() > STANDS_OUT).then_some(Line { hz, power, noise, beside })
+        Some(Line { hz, power, noise, beside })
     }
 
     /// What a line takes of the transform, and no other may.
     fn wide_hz(&self) -> f64 {
         WIDE / (self.values.len() as f64 * self.period_s)
+    }
+
+    /// Where a line is looked for again.
+    fn near_hz(&self, hz: f64) -> [f64; 2] {
+        [hz - 0.5 * self.wide_hz(), hz + 0.5 * self.wide_hz()]
     }
 }
 

@@ -18,7 +18,6 @@ use gimbal_servo::Config;
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
 pub use faults::{Data, faults};
-use hum::without_hum;
 pub(crate) use part::BEGINNING_S;
 pub(crate) use plateau::{LEAST_STOP, peak_rad, plateau};
 pub use quiet::RateNoise;
@@ -94,10 +93,7 @@ impl Record {
             if let Some(stuck) = stuck::told(column.name(), values, period_s) {
                 faults.push(stuck);
             }
-            let mut values = filled(&grid.place(values));
-            let all = vec![true; values.len()];
-            notes.extend(without_hum(&mut values, &all, None, period_s).iter().map(|hum| hum.told(column)));
-            values
+            filled(&grid.place(values))
         };
         let accel_mps2 = [Column::AccelX, Column::AccelY, Column::AccelZ].map(&mut driven);
         let (rate_radps, cross_radps) = (driven(Column::VehicleRate), driven(Column::CrossRate));

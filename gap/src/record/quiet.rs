@@ -33,7 +33,8 @@ const APART: usize = 8;
 impl Record {
     /// Takes out what sensors add, where the outputs show it: noise of the rate, and hum.
     pub fn quieten(&mut self, physics: &Physics) {
-        let nominal = self.filter_rate(physics);
+        let as_filtered = self.filter_rate(physics);
+        let nominal = self.hush_inputs(physics, as_filtered);
         if let Some(hushed) = self.hushed(&nominal) {
             *self = hushed;
         }
@@ -57,7 +58,7 @@ impl Record {
     }
 
     /// What a platform shows that begins as the first rows do.
-    fn predicted(&self, physics: &Physics, inputs: &Inputs) -> Prediction {
+    pub(super) fn predicted(&self, physics: &Physics, inputs: &Inputs) -> Prediction {
         predict(physics, inputs, &self.begin(physics, inputs), usize::MAX)
     }
 
