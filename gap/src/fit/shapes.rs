@@ -2,28 +2,33 @@
 //!
 //! ```text
 //! G_theta, G_T: theta and T_m after a torque of 1 N m on the gimbal        S = 1 - G_T
-//! |G|^2   noise of the logged inputs        theta: |S|^2, T_m: |S G_T / G_theta|^2   noise of the pick-off in the loop
+//! |G|^2   noise of the logged inputs        theta: |S|^2, T_m: |S F|^2   noise of the pick-off in the loop
+//! F(f) = sum over k of F(i w) h(w), w = 2 pi (f - k / t)        h: sinc exp(-i w t / 2), or sinc^2
 //! ```
 //!
 //! The servo answers what the pick-off says, noise or not: `T_m = F (theta + n)`, so `T_m = S F n` and the pick-off shows
-//! `S n`; F is what `T_m` is to theta after the torque.
+//! `S n`; between two samples, t apart, n is held, or on a line.
 
+use std::f64::consts::{PI, TAU};
+
+use gimbal_servo::servo;
 use realfft::num_complex::Complex;
 
 use super::plans::Plans;
 use super::signals::Signals;
 use crate::record::{Signal, between};
 
-/// Power of a channel's response over which that is not known to be more than rounding, over its largest.
-const ROUNDING: f64 = 1e-12;
+/// Images of a spectrum that are summed, to either side.
+const IMAGES: i32 = 2;
 
 /// The loop after an impulse of torque.
 #[derive(Debug, Clone)]
 pub(crate) struct Impulse {
     /// Every channel, over its noise.
     pub(crate) channels: Signals,
-    /// theta and `T_m` of the platform [rad, N m].
-    pub(crate) loop_signals: [Vec<f64>; 2],
+    /// `T_m` of the platform [N m], and its servo.
+    pub(crate) motor_torque_nm: Vec<f64>,
+    pub(crate) servo: servo::Config,
     /// The torque, over one row [N m].
     pub(crate) torque_nm: f64,
 }
@@ -33,8 +38,8 @@ pub(crate) struct Impulse {
 pub(crate) struct Shapes {
     /// Of the logged inputs' noise.
     inputs: Vec<f64>,
-    /// Of the pick-off's in the loop.
-    in_loop: Vec<f64>,
+    /// Of the pick-off's in the loop, held and on lines between samples.
+    in_loop: [Vec<f64>; 2],
     step_hz: f64,
 }
 
@@ -43,21 +48,23 @@ impl Shapes {
     pub(super) fn of(impulse: &Impulse, signals: &[Signal], plans: &Plans, period_s: f64) -> Vec<Self> {
         let step_hz = 1.0 / (plans.length() as f64 * period_s);
         let lines = |series: &[f64]| plans.lines(series.iter().copied());
-        let [theta, torque] = impulse.loop_signals.each_ref().map(|series| lines(series));
-        let largest = theta.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
-        let in_loop = |signal: Signal| -> Vec<f64> {
-            let of = |(theta, torque): (&Complex<f64>, &Complex<f64>)| {
-                let torque = torque / impulse.torque_nm;
-                let closed = (1.0 - torque).norm_sqr();
-                match signal {
-                    Signal::GyroAngle => closed,
-                    Signal::MotorTorque if theta.norm_sqr() > ROUNDING * largest => {
-                        closed * torque.norm_sqr() * impulse.torque_nm.powi(2) / theta.norm_sqr()
-                    }
-                    _ => 0.0,
-                }
-            };
-            theta.iter().zip(&torque).map(of).collect()
+        let closed: Vec<f64> = lines(&impulse.motor_torque_nm)
+            .iter()
+            .map(|torque| (1.0 - torque / impulse.torque_nm).norm_sqr())
+            .collect();
+        let answer = |line: usize, held: bool| match line {
+            0 => 0.0,
+            _ => answer(&impulse.servo, line as f64 * step_hz, period_s, held).norm_sqr(),
+        };
+        let in_loop = |signal: Signal| {
+            [true, false].map(|held| {
+                let of = |(line, closed): (usize, &f64)| match signal {
+                    Signal::GyroAngle => *closed,
+                    Signal::MotorTorque => closed * answer(line, held),
+                    Signal::GimbalAngle => 0.0,
+                };
+                closed.iter().enumerate().map(of).collect()
+            })
         };
         let shapes = |(channel, signal): (&Vec<f64>, &Signal)| Self {
             inputs: lines(channel).iter().map(Complex::norm_sqr).collect(),
@@ -68,12 +75,55 @@ impl Shapes {
     }
 
     /// At a line.
-    pub(super) fn line(&self, line: usize) -> [f64; 2] {
-        [self.inputs[line], self.in_loop[line]]
+    pub(super) fn line(&self, line: usize) -> [f64; 3] {
+        let [held, on_lines] = &self.in_loop;
+        [self.inputs[line], held[line], on_lines[line]]
     }
 
     /// At a frequency.
-    pub(super) fn at(&self, hz: f64) -> [f64; 2] {
-        [between(&self.inputs, hz / self.step_hz), between(&self.in_loop, hz / self.step_hz)]
+    pub(super) fn at(&self, hz: f64) -> [f64; 3] {
+        let [held, on_lines] = &self.in_loop;
+        [&self.inputs, held, on_lines].map(|powers| between(powers, hz / self.step_hz))
+    }
+}
+
+/// What sampled noise of the pick-off, held between samples or on lines, makes of the motor's torque: F at a frequency and at
+/// its images.
+fn answer(servo: &servo::Config, hz: f64, period_s: f64, held: bool) -> Complex<f64> {
+    let image = |number: i32| {
+        let hz = hz - f64::from(number) / period_s;
+        let turn = PI * hz * period_s;
+        let sinc = turn.sin() / turn;
+        let between = if held { Complex::from_polar(sinc, -turn) } else { Complex::from(sinc * sinc) };
+        transfer(servo, hz) * between
+    };
+    (-IMAGES..=IMAGES).map(image).sum()
+}
+
+/// F at a frequency [N m/rad].
+fn transfer(servo: &servo::Config, hz: f64) -> Complex<f64> {
+    let s = Complex::new(0.0, TAU * hz);
+    let section = |time_s: &f64| 1.0 + time_s * s;
+    let zeros: Complex<f64> = servo.lead_time_constants_s.iter().map(section).product();
+    let poles: Complex<f64> = servo.lag_time_constants_s.iter().map(section).product();
+    servo.gain_nm_per_rad_s * zeros / (s * poles * section(&servo.motor_lag_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use gimbal_servo::Config;
+    use realfft::num_complex::Complex;
+
+    use super::{answer, transfer};
+
+    #[test]
+    fn closed_form_a_slow_sample_is_answered_as_what_is_continuous() {
+        let servo = Config::consistent().servo;
+        for hz in [0.1, 0.3] {
+            let exact = transfer(&servo, hz);
+            let late = Complex::from_polar(1.0, -std::f64::consts::PI * hz * 1e-3);
+            assert!((answer(&servo, hz, 1e-3, false) / exact - 1.0).norm() < 0.01, "{hz}");
+            assert!((answer(&servo, hz, 1e-3, true) / (exact * late) - 1.0).norm() < 0.05, "{hz}");
+        }
     }
 }

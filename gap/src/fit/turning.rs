@@ -36,7 +36,8 @@ pub(crate) fn impulse(base: &Physics, record: &Record, over_noise: &[f64]) -> Im
     Impulse {
         channels: scaled(channels, over_noise),
         torque_nm: impulse_nm(base, record),
-        loop_signals: [run.gyro_angle_rad, run.motor_torque_nm],
+        motor_torque_nm: run.motor_torque_nm,
+        servo: base.config.servo,
     }
 }
 

@@ -14,6 +14,10 @@ const WRITTEN: f64 = 1e-4;
 /// no larger is the least count of a log, as every log has one.
 const SHOWN: f64 = 6.0;
 const LEAST_COUNT: f64 = 1.3;
+/// The same of a step that divides a power of ten by one of two, as converters of so many bits do over a full scale of 1, 2 or
+/// 5 units.
+const CONVERTED: f64 = 5.0;
+const BITS: std::ops::RangeInclusive<i32> = 10..=20;
 /// Fewest gaps.
 const LEAST: usize = 20;
 
@@ -36,13 +40,18 @@ pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<
     let steps: f64 = gaps.iter().map(|gap| (gap / first).round()).sum();
     let step_rad = gaps.iter().sum::<f64>() / steps;
     let over = step_rad / noise_rad;
-    let shown = over > LEAST_COUNT && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN;
-    (whole > WHOLE * gaps.len() as f64 && shown && !is_written(step_rad)).then_some(step_rad)
+    let least = if BITS.into_iter().any(|bits| is_decimal(step_rad * f64::from(bits).exp2())) {
+        CONVERTED
+    } else {
+        LEAST_COUNT
+    };
+    let shown = over > least && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN;
+    (whole > WHOLE * gaps.len() as f64 && shown && !is_decimal(step_rad)).then_some(step_rad)
 }
 
-/// Whether a step is a power of ten.
-fn is_written(step_rad: f64) -> bool {
-    let digits = step_rad.log10();
+/// Whether a value is a power of ten.
+fn is_decimal(value: f64) -> bool {
+    let digits = value.log10();
     (digits - digits.round()).abs() < 1e-3
 }
 
@@ -72,5 +81,9 @@ mod tests {
         // far below the noise, and as many digits as were written
         assert_eq!(step_rad(&angles(3e-8), &valid, 3e-7), None);
         assert_eq!(step_rad(&angles(1e-6), &valid, 3e-7), None);
+        // 16 bits over 40 mrad are a log's as long as they hardly add to the noise, and the pick-off's above
+        let bits = 40e-3 / 65_536.0;
+        assert_eq!(step_rad(&angles(bits), &valid, 3.5e-7), None);
+        assert!(step_rad(&angles(4.0 * bits), &valid, 3e-7).is_some());
     }
 }

@@ -15,7 +15,7 @@ const LENGTHS: [usize; 5] = [1, 4, 16, 64, 256];
 const MOST: usize = 12;
 const APART_S: f64 = 0.25;
 /// Rows before and after a moment in which the bearing may not turn around.
-const BEFORE: usize = 30;
+const BEFORE: usize = 100;
 const AFTER: usize = 100;
 /// What a moment must bring beyond its choice [nats].
 const LEAST: f64 = 5.0;

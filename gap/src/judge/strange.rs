@@ -17,9 +17,10 @@ use std::fmt;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::group::On;
 use super::left_over::steady;
 use super::torques::groups;
-use crate::fit::{Fit, Linear, Problem, gram, slices, solve};
+use crate::fit::{Fit, Linear, Problem, Solution, gram, slices, solve};
 use crate::record::rough;
 
 /// Amplitude that a torque must have beside those before it, over its own: of torques that are nearly alike a difference as
@@ -39,6 +40,10 @@ const ACCEL_NOISE_MPS2: f64 = 0.02;
 const AGREED_COUNTS: f64 = 2.0;
 /// The same of the power of one sensor, whose own noise may have a spectrum not unlike it.
 const LIKE_NOISE_COUNTS: f64 = 0.5;
+/// What of a torque on the float is to be seen where the bearing does not turn around, and what its choice costs where it is not
+/// [nats]: there the rate's noise shifts the turn, as a drift of the float does.
+const SEEN_AWAY: f64 = 8.0;
+const ELSEWHERE_NATS: f64 = 40.0;
 /// Precision of a torque's size: none, but for what keeps equations regular.
 const FREE: f64 = 1e-9;
 
@@ -79,10 +84,8 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let begin = problem.columns.begin;
     let fixed = begin + problem.columns.nuisances;
     let (slopes, curvatures) = problem.pulled(&precision, &fit.shifts);
-    let gain = |torques: Vec<Vec<f32>>| -> f64 {
-        let mut others = fit.sensitivities.clone();
-        others.extend(torques);
-        let (gram, mut drive) = linear.joined(&others, &fit.residual);
+    let solved = |others: &[Vec<f32>]| -> Option<Solution> {
+        let (gram, mut drive) = linear.joined(others, &fit.residual);
         let mut weights = precision[..fixed].to_vec();
         for (place, (slope, curvature)) in slopes.iter().zip(&curvatures).enumerate() {
             drive[begin + place] -= slope;
@@ -90,15 +93,29 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         }
         weights.extend(others.iter().map(|_| FREE));
         let chosen: Vec<usize> = (0..drive.len()).collect();
-        solve(&gram, &drive, &chosen, &weights).map_or(0.0, |solution| solution.gain)
+        solve(&gram, &drive, &chosen, &weights)
     };
-    let base = gain(Vec::new());
+    let base = solved(&fit.sensitivities);
+    let left = less(&fit.residual, base.as_ref(), &linear.columns, &fit.sensitivities);
+    let away = steady(problem);
     let mut strangers: Vec<Stranger> = groups(problem, fit)
         .into_par_iter()
         .map(|group| {
             let columns = apart(group.columns(problem, fit));
             let torques = columns.len();
-            Stranger { of: group.of, gain: gain(columns) - base, torques, choice: group.choice, counts: 1.0 }
+            let mut others = fit.sensitivities.clone();
+            others.extend(columns);
+            let with = solved(&others);
+            let gain = [&with, &base].map(|solution| solution.as_ref().map_or(0.0, |solution| solution.gain));
+            let mut own =
+                Stranger { of: group.of, gain: gain[0] - gain[1], torques, choice: group.choice, counts: 1.0 };
+            if group.on == On::Float && own.nats() > SEEN_AWAY {
+                let then = less(&fit.residual, with.as_ref(), &linear.columns, &others);
+                if told_by(&left, &then, &away) < SEEN_AWAY {
+                    own.choice += ELSEWHERE_NATS;
+                }
+            }
+            own
         })
         .collect();
     let counts = if problem.turns_mostly { 1.0 } else { AGREED_COUNTS };
@@ -111,6 +128,30 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     }
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
     strangers
+}
+
+/// What a solution leaves of a residual.
+fn less(residual: &[f64], solution: Option<&Solution>, fixed: &[Vec<f32>], others: &[Vec<f32>]) -> Vec<f64> {
+    let mut left = residual.to_vec();
+    let coefficients = solution.iter().flat_map(|solution| solution.coefficients.iter());
+    for (coefficient, column) in coefficients.zip(fixed.iter().chain(others)) {
+        left.iter_mut().zip(column).for_each(|(left, own)| *left -= coefficient * f64::from(*own));
+    }
+    left
+}
+
+/// What some rows say of what changes one residual into another [nats]: `(d . r)^2 / (2 d . d)`.
+fn told_by(before: &[f64], after: &[f64], rows: &[bool]) -> f64 {
+    let width = before.len() / rows.len().max(1);
+    let (mut along, mut square) = (0.0, 0.0);
+    for (row, _) in rows.iter().enumerate().filter(|(_, counts)| **counts) {
+        for k in row * width..(row + 1) * width {
+            let change = before[k] - after[k];
+            along += change * before[k];
+            square += change * change;
+        }
+    }
+    if along > 0.0 { 0.5 * along * along / square } else { 0.0 }
 }
 
 /// How far the channels agree on a torque, in standard deviations, beyond what noise of the logged inputs is to the

@@ -25,8 +25,7 @@ const SOFT: f64 = 0.02;
 /// most of the time and as it does not; and what it takes of slow ones, as it wanders [nats].
 const WARY_NATS: [f64; 2] = [18.0, 0.0];
 const WANDERS_NATS: [f64; 2] = [40.0, 12.0];
-const SLOW: [&str; 3] = ["time", "specific force", TO_THE_GYRO];
-const TO_THE_GYRO: &str = "cross rate, to the gyro";
+const SLOW: [&str; 2] = ["time", "specific force"];
 
 type Series = Vec<f64>;
 type Functions = (&'static str, Vec<Series>);
@@ -176,7 +175,7 @@ impl<'a> Motion<'a> {
         ];
         if let Some(cross) = &self.cross {
             let quickly = changes(&self.followed(cross, QUICK_S));
-            groups.push((TO_THE_GYRO, vec![cross.clone(), quickly, product(cross, &self.slip)]));
+            groups.push(("cross rate, to the gyro", vec![cross.clone(), quickly, product(cross, &self.slip)]));
         }
         groups
     }

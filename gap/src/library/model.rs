@@ -21,7 +21,17 @@ const NOMINAL: [(&str, &[&str]); 9] = [
     ("gyro", &["gyro_damping", "angular_momentum", "float inertia"]),
     ("servo", &["loop_gain", "T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9"]),
     ("motor", &["motor_lag"]),
-    ("bearing", &["friction_level", "bearing viscosity", "slip rate", "roundness of the clamp"]),
+    (
+        "bearing",
+        &[
+            "friction_level",
+            "bearing viscosity",
+            "slip rate",
+            "roundness of the clamp",
+            "roundness of half its width",
+            "roundness of its corners alone",
+        ],
+    ),
     ("balance", &["unbalance x", "unbalance y"]),
     ("mass_unbalance", &["unbalance x", "unbalance y"]),
     ("structure", &["gimbal_inertia"]),

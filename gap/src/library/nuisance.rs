@@ -13,8 +13,8 @@ const BEYOND: f64 = 0.04;
 const STEP: f64 = 0.02;
 /// Alignment of the accelerometers with the platform's axes, about each [rad]: the model file has no name for it.
 const ALIGNMENT_RAD: f64 = 1e-3;
-/// How round the corners of the friction's clamp are, up to the hyperbolic tangent [1]: no law near zero rate is known better,
-/// and the model file has no name for it.
+/// How round the corners of the friction's clamp are, in shares of each shape [1]: no law near zero rate is known better, and
+/// the model file has no name for it.
 const ROUNDNESS: f64 = 1.0;
 
 /// One nominal parameter.
@@ -118,7 +118,9 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative(tolerance.gimbal_inertia, "gimbal_inertia", |p| &mut p.config.servo.gimbal_inertia_kg_m2),
         relative(default, "float inertia", |p| &mut p.config.gyro.float_inertia_kg_m2),
         relative(default, "slip rate", |p| &mut p.config.bearing.slip_rate_radps),
-        added(ROUNDNESS, "roundness of the clamp", |p| &mut p.friction.roundness),
+        added(ROUNDNESS, "roundness of the clamp", |p| &mut p.friction.corner.wide),
+        added(ROUNDNESS, "roundness of half its width", |p| &mut p.friction.corner.middle),
+        added(ROUNDNESS, "roundness of its corners alone", |p| &mut p.friction.corner.narrow),
         relative(default, "T1", |p| &mut p.config.servo.lead_time_constants_s[0]),
         relative(default, "T2", |p| &mut p.config.servo.lead_time_constants_s[1]),
         relative(default, "T3", |p| &mut p.config.servo.lead_time_constants_s[2]),

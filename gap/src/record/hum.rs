@@ -6,13 +6,14 @@
 //! ```
 //!
 //! A line of an input may be the vehicle's vibration. The outputs tell: what drives the platform is in them, hum of an
-//! input is in what the prediction leaves of them.
+//! input is in what the prediction leaves of them. Where they tell nothing, what is larger than the sensor's noise is
+//! vibration.
 
 use std::f64::consts::{LN_2, TAU};
 
 use gimbal_log::Column;
 
-use super::{Record, filled};
+use super::{RateNoise, Record, filled};
 use crate::simulate::{Inputs, Physics, Prediction};
 use crate::window::{hann, spectrum};
 
@@ -34,7 +35,8 @@ const STANDS_OUT: f64 = 12.0;
 /// Power over that of the strongest line beside it; and of what is predicted at its place, over its own, at most.
 const ALONE: f64 = 2.5;
 const PREDICTED: f64 = 0.1;
-/// Amplitude at most, over the noise of a row.
+/// Amplitude at most, over the noise about it, in a row; a line of an input that is larger over the noise of the upper half of
+/// the band is vibration, unless the outputs tell otherwise.
 const LARGEST: f64 = 3.0;
 
 /// A line that was taken out.
@@ -42,6 +44,8 @@ const LARGEST: f64 = 3.0;
 pub(super) struct Hum {
     pub(super) hz: f64,
     pub(super) amplitude: f64,
+    /// Over the noise of the upper half of the band, in a row.
+    over_noise: f64,
 }
 
 impl Hum {
@@ -55,8 +59,7 @@ impl Hum {
 const DRIVEN: [Column; 5] = [Column::AccelX, Column::AccelY, Column::AccelZ, Column::VehicleRate, Column::CrossRate];
 
 impl Record {
-    /// Takes hum out of each input where a prediction without it leaves less of its lines in the outputs; what is predicted
-    /// then.
+    /// Takes hum out of each input, as far as the outputs let it be hum; what is predicted then.
     pub(super) fn hush_inputs(&mut self, physics: &Physics, as_logged: Prediction) -> Prediction {
         let mut nominal = as_logged;
         for column in DRIVEN {
@@ -69,8 +72,11 @@ impl Record {
             }
             inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
             let without = self.predicted(physics, &inputs);
-            if self.lines_left(&nominal, &found) - self.lines_left(&without, &found) > STANDS_OUT {
+            let vibrates = found.iter().any(|hum| hum.over_noise > LARGEST);
+            let needed = if vibrates { STANDS_OUT } else { -STANDS_OUT };
+            if self.lines_left(&nominal, &found) - self.lines_left(&without, &found) > needed {
                 self.notes.extend(found.iter().map(|hum| hum.told(column)));
+                self.rate_noise = RateNoise::logged(&inputs.rate_radps);
                 (self.inputs, nominal) = (inputs, without);
             }
         }
@@ -142,7 +148,7 @@ pub(super) fn without_hum(values: &mut [f64], valid: &[bool], predicted: Option<
                 continue;
             }
             let Some(line) = series.hum(&powers, moves.as_deref(), between_hz) else { continue };
-            found.push(series.take_out(line.hz));
+            found.push(series.take_out(line.hz, series.floor(&powers)));
             let Some(without) = series.powers(&series.values) else { break };
             powers = without;
         }
@@ -161,8 +167,8 @@ struct Series {
 }
 
 impl Series {
-    /// Takes a line of one frequency out.
-    fn take_out(&mut self, hz: f64) -> Hum {
+    /// Takes a line of one frequency out of a series of such noise.
+    fn take_out(&mut self, hz: f64, noise: f64) -> Hum {
         let (period_s, weight) = (self.period_s, self.window.iter().sum::<f64>());
         let wave = |k: usize| (TAU * hz * k as f64 * period_s).sin_cos();
         let (mut sine, mut cosine) = (0.0, 0.0);
@@ -175,7 +181,8 @@ impl Series {
             let (sin, cos) = wave(k);
             *value -= sine * sin + cosine * cos;
         }
-        Hum { hz, amplitude: sine.hypot(cosine) }
+        let amplitude = sine.hypot(cosine);
+        Hum { hz, amplitude, over_noise: amplitude / noise }
     }
 
     /// Power of values over frequency, under the window.
@@ -185,6 +192,11 @@ impl Series {
         let tapered: Vec<f64> =
             values.iter().zip(&self.window).map(|(value, window)| window * (value - mean)).collect();
         spectrum(&tapered, self.length())
+    }
+
+    /// Rms of a row, were all noise as that of the upper half of the band.
+    fn floor(&self, powers: &[f64]) -> f64 {
+        (noise(&mut powers[powers.len() / 2..].to_vec()) / self.window.iter().map(|w| w * w).sum::<f64>()).sqrt()
     }
 
     /// Rows of a transform.
@@ -234,9 +246,7 @@ impl Series {
             return None;
         }
         let beside = others.iter().copied().fold(0.0, f64::max);
-        let middle = others.len() / 2;
-        // the median of a chi square of two degrees over its mean
-        let noise = (*others.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2).max(1e-300);
+        let noise = noise(&mut others);
         Some(Line { hz, power, noise, beside })
     }
 
@@ -249,6 +259,12 @@ impl Series {
     fn near_hz(&self, hz: f64) -> [f64; 2] {
         [hz - 0.5 * self.wide_hz(), hz + 0.5 * self.wide_hz()]
     }
+}
+
+/// Mean power of noise by its median: that of a chi square of two degrees.
+fn noise(powers: &mut [f64]) -> f64 {
+    let middle = powers.len() / 2;
+    (*powers.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2).max(1e-300)
 }
 
 /// A line of a transform.

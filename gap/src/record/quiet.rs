@@ -33,16 +33,16 @@ const APART: usize = 8;
 impl Record {
     /// Takes out what sensors add, where the outputs show it: noise of the rate, and hum.
     pub fn quieten(&mut self, physics: &Physics) {
-        let as_filtered = self.filter_rate(physics);
-        let nominal = self.hush_inputs(physics, as_filtered);
+        let as_logged = self.predicted(physics, &self.inputs);
+        let hushed = self.hush_inputs(physics, as_logged);
+        let nominal = self.filter_rate(physics, hushed);
         if let Some(hushed) = self.hushed(&nominal) {
             *self = hushed;
         }
     }
 
     /// Filters the rate where that brings the prediction closer, and tells what is predicted then.
-    fn filter_rate(&mut self, physics: &Physics) -> Prediction {
-        let as_logged = self.predicted(physics, &self.inputs);
+    fn filter_rate(&mut self, physics: &Physics, as_logged: Prediction) -> Prediction {
         let Some((rate_radps, pass)) = filtered(&self.inputs.rate_radps) else { return as_logged };
         let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
         inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);

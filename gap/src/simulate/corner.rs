@@ -1,39 +1,88 @@
 //! The corners of the friction's clamp at the slip rate, and what they have more where they are round.
+//!
+//! ```text
+//! share(x) = clamp(x) + wide (tanh x - clamp(x)) - sgn x (middle q(x, 1) + narrow q(x, 0.35))        x = w / w_s
+//! q(x, h) = max(0, h - ||x| - 1|)^2 / (4 h)
+//! ```
+//!
+//! With these three `x / (1 + |x|^n)^(1/n)` for n from 3 on, and `ln(cosh(b (x + 1)) / cosh(b (x - 1))) / 2 b` for b from 2
+//! on, are met to 0.01.
 
 use super::lanes::within;
 
 /// So many slip rates away a round corner is none any more.
-pub(super) const NO_CORNER: f64 = 3.0;
+pub(super) const NO_CORNER: f64 = 5.0;
+/// Half widths of the corners that are round by a parabola.
+const MIDDLE: f64 = 1.0;
+const NARROW: f64 = 0.35;
 
-/// What round corners have more than a clamp: `x (27 + x^2) / (27 + 9 x^2)` up to 3, a hyperbolic tangent within 2.4 %, and 1
-/// from there.
-#[inline(always)]
-pub(super) fn rounding(x: f64) -> f64 {
-    let near = within(x, NO_CORNER);
-    let square = near * near;
-    near * (27.0 + square) / (27.0 + 9.0 * square) - within(x, 1.0)
+/// How round the clamp's corners are, in shares of three shapes; the clamp as it is has none of any.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Corner {
+    /// Of a hyperbolic tangent.
+    pub wide: f64,
+    /// Of a parabola from zero rate to twice the slip rate.
+    pub middle: f64,
+    /// Of a parabola a third of that.
+    pub narrow: f64,
 }
 
-/// Its integral from 0 to a rate that is not below.
-pub(super) fn rounded_area(x: f64) -> f64 {
-    let near = x.min(NO_CORNER);
-    let round = (0.5 * near * near + 12.0 * (near * near / 3.0).ln_1p()) / 9.0;
-    let hard = if near > 1.0 { near - 0.5 } else { 0.5 * near * near };
-    round - hard
+impl Corner {
+    /// Whether it is round at all.
+    pub(super) fn is_round(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// What it has more than a clamp.
+    #[inline(always)]
+    pub(super) fn rounding(&self, x: f64) -> f64 {
+        let away = x.abs();
+        if away >= NO_CORNER {
+            return 0.0;
+        }
+        let parabola = |half: f64| (half - (away - 1.0).abs()).max(0.0).powi(2) / (4.0 * half);
+        let parabolas = self.middle * parabola(MIDDLE) + self.narrow * parabola(NARROW);
+        self.wide * (x.tanh() - within(x, 1.0)) - x.signum() * parabolas
+    }
+
+    /// Its integral from 0 to a rate that is not below.
+    pub(super) fn rounded_area(&self, x: f64) -> f64 {
+        let near = x.min(NO_CORNER);
+        let clamp = if near > 1.0 { near - 0.5 } else { 0.5 * near * near };
+        let parabola = |half: f64| {
+            let rising = (near - 1.0 + half).clamp(0.0, half).powi(3);
+            let falling = half.powi(3) - (half - (near - 1.0).clamp(0.0, half)).powi(3);
+            (rising + falling) / (12.0 * half)
+        };
+        self.wide * (near.cosh().ln() - clamp) - self.middle * parabola(MIDDLE) - self.narrow * parabola(NARROW)
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{NO_CORNER, rounded_area, rounding};
+    use super::{Corner, NO_CORNER};
     use crate::simulate::lanes::within;
 
+    const ALL: Corner = Corner { wide: 0.7, middle: 0.4, narrow: -0.3 };
+
     #[test]
-    fn closed_form_round_corners_are_a_hyperbolic_tangent_and_end() {
-        for x in [-2.7, -1.0, -0.3, 0.0, 0.5, 1.0, 1.7, 2.9, 3.0, 7.0] {
-            let round = rounding(x) + within(x, 1.0);
-            assert!((round - f64::tanh(x)).abs() < 0.024, "{x}: {round}");
+    fn closed_form_round_corners_meet_other_laws_and_end() {
+        let tangent = Corner { wide: 1.0, ..Corner::default() };
+        let cosh = Corner { wide: 0.0, middle: 0.067, narrow: 0.789 };
+        let power = Corner { wide: 0.058, middle: 0.0, narrow: 0.768 };
+        for x in [-4.7, -1.2, -1.0, -0.8, 0.0, 0.5, 0.95, 1.0, 1.1, 1.7, 2.9, 3.0, 7.0_f64] {
+            let laws = [
+                (tangent, x.tanh()),
+                (cosh, ((4.0 * (x + 1.0)).cosh() / (4.0 * (x - 1.0)).cosh()).ln() / 8.0),
+                (power, x / (1.0 + x.abs().powi(8)).powf(0.125)),
+            ];
+            for (corner, law) in laws {
+                let round = corner.rounding(x) + within(x, 1.0);
+                assert!((round - law).abs() < 0.01, "{x}: {round}, {law}");
+            }
+            assert!((ALL.rounding(x) + ALL.rounding(-x)).abs() < 1e-15);
         }
-        assert!(rounding(NO_CORNER).abs() < 1e-15 && rounding(1e3).abs() < 1e-15);
+        assert!(ALL.rounding(NO_CORNER).abs() < 1e-15 && ALL.rounding(1e3).abs() < 1e-15);
     }
 
     #[test]
@@ -42,8 +91,8 @@ mod tests {
         let mut area = 0.0;
         for k in 0..50_000 {
             let x = step * f64::from(k);
-            assert!((rounded_area(x) - area).abs() < 1e-7, "{x}");
-            area += step * rounding(x + 0.5 * step);
+            assert!((ALL.rounded_area(x) - area).abs() < 1e-7, "{x}");
+            area += step * ALL.rounding(x + 0.5 * step);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::Physics;
 use super::bearing::Viscous;
 use super::cable::Stops;
 use super::chain::{PHI, PHI_RATE};
+use super::corner::Corner;
 use super::inputs::turned;
 use super::lanes::{Lanes, within};
 use super::now::Now;
@@ -22,7 +23,7 @@ pub(super) struct Law<'a, const L: usize> {
     load_factor: Lanes<L>,
     asymmetry: Lanes<L>,
     pub(super) slip_radps: Lanes<L>,
-    roundness: Lanes<L>,
+    corner: [Corner; L],
     is_round: bool,
     pub(super) stop_rad: Lanes<L>,
     unbalance_kg_m: [Lanes<L>; 2],
@@ -59,8 +60,8 @@ impl<'a, const L: usize> Law<'a, L> {
             load_factor: of(&|own| own.friction.load_factor),
             asymmetry: of(&|own| own.friction.asymmetry),
             slip_radps: of(&|own| own.config.bearing.slip_rate_radps),
-            roundness: of(&|own| own.friction.roundness),
-            is_round: any(&|own| own.friction.roundness != 0.0),
+            corner: physics.map(|own| own.friction.corner),
+            is_round: any(&|own| own.friction.corner.is_round()),
             stop_rad: of(&Physics::stop_rad),
             unbalance_kg_m: [of(&|own| own.config.unbalance.x_kg_m), of(&|own| own.config.unbalance.y_kg_m)],
             constant_nm: of(&|own| own.constant_nm),

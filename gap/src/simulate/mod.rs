@@ -22,6 +22,7 @@ mod sprung;
 
 pub use begin::Begin;
 pub(crate) use chain::{ANGLES, TORQUES};
+pub use corner::Corner;
 pub use inputs::Inputs;
 pub(crate) use inputs::turned;
 pub use physics::{BuildUp, Fall, Friction, Hysteresis, Loop, Measurement, Physics, Ripple, Stribeck};

@@ -2,6 +2,8 @@
 
 use gimbal_servo::Config;
 
+use super::corner::Corner;
+
 /// Everything that a prediction depends on beside the inputs and the beginning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Physics {
@@ -52,8 +54,8 @@ pub struct Friction {
     pub per_g: f64,
     /// `T_f (1 + a sgn w)`.
     pub asymmetry: f64,
-    /// How round the clamp's corners are: 0 as it is, 1 about a hyperbolic tangent [1].
-    pub roundness: f64,
+    /// How round the clamp's corners are.
+    pub corner: Corner,
     /// `b w` [N m s/rad].
     pub viscous_nm_s: f64,
     /// `b w |w|` [N m s2/rad2].
@@ -172,7 +174,7 @@ impl Default for Friction {
             viscous_factor: 1.0,
             per_g: 0.0,
             asymmetry: 0.0,
-            roundness: 0.0,
+            corner: Corner::default(),
             viscous_nm_s: 0.0,
             quadratic_nm_s2: 0.0,
             stribeck: None,

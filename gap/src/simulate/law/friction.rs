@@ -1,7 +1,7 @@
 //! The bearings' friction: its level, the clamp, steps that cross a corner, build-up over a displacement.
 
 use super::Law;
-use crate::simulate::corner::{NO_CORNER, rounded_area, rounding};
+use crate::simulate::corner::NO_CORNER;
 use crate::simulate::lanes::{Lanes, side, within};
 use crate::simulate::now::Now;
 use crate::simulate::physics::BuildUp;
@@ -49,12 +49,12 @@ impl<const L: usize> Law<'_, L> {
         level * (1.0 + self.asymmetry * w.side())
     }
 
-    /// Share of the friction that is there at a rate: `clamp(x) + roundness (round(x) - clamp(x))`, `x = w / w_s`.
+    /// Share of the friction that is there at a rate: `clamp(x)` and what its corners have more, `x = w / w_s`.
     #[inline(always)]
     pub(in crate::simulate) fn share(&self, w: Lanes<L>) -> Lanes<L> {
         let x = w / self.slip_radps;
         let clamp = x.within(1.0);
-        if self.is_round_at(w) { clamp + self.roundness * x.map(rounding) } else { clamp }
+        if self.is_round_at(w) { clamp + self.rounding(x) } else { clamp }
     }
 
     /// The clamp, implicit: `w + brake level share(w) = rate`: w, share of the friction. What is round of it is a small part,
@@ -63,10 +63,16 @@ impl<const L: usize> Law<'_, L> {
     pub(in crate::simulate) fn clamp(&self, rate: Lanes<L>, brake: Lanes<L>, level: Lanes<L>) -> (Lanes<L>, Lanes<L>) {
         let mut w = self.hard(rate, brake, level);
         if self.is_round_at(w) {
-            let round = self.roundness * (w / self.slip_radps).map(rounding);
+            let round = self.rounding(w / self.slip_radps);
             w = self.hard(rate - brake * self.built_up(level, w) * round, brake, level);
         }
         (w, self.share(w))
+    }
+
+    /// What the corners have more than a clamp, at a rate over the slip rate.
+    #[inline(always)]
+    fn rounding(&self, x: Lanes<L>) -> Lanes<L> {
+        Lanes::each(|lane| self.corner[lane].rounding(x[lane]))
     }
 
     /// Whether any of the rates is near a round corner.
@@ -109,11 +115,11 @@ impl<const L: usize> Law<'_, L> {
         let (low, high) = (from.min(w), from.max(w));
         let crosses = (low < -slip && high > -slip) || (low < slip && high > slip);
         if crosses && high - low > 1e-9 {
-            let roundness = self.roundness[lane];
+            let corner = self.corner[lane];
             let area = |w: f64| {
                 let a = w.abs();
                 let hard = if a > slip { a - 0.5 * slip } else { 0.5 * a * a / slip };
-                let round = if roundness == 0.0 { 0.0 } else { roundness * slip * rounded_area(a / slip) };
+                let round = if corner.is_round() { slip * corner.rounded_area(a / slip) } else { 0.0 };
                 level * (1.0 + asymmetry * side(w)) * (hard + round)
             };
             return Some((area(high) - area(low)) / (high - low));
@@ -136,7 +142,7 @@ impl<const L: usize> Law<'_, L> {
         let [before, zeta_before] = from;
         let friction = &self.physics[lane].friction;
         let (along, slip) = (friction.presliding_rad, self.slip_radps[lane]);
-        let clamp = |w: f64| within(w / slip, 1.0) + friction.roundness * rounding(w / slip);
+        let clamp = |w: f64| within(w / slip, 1.0) + friction.corner.rounding(w / slip);
         let full = |w: f64| if friction.builds_up == BuildUp::OnClamp { clamp(w) } else { side(w) };
         let clamped = if friction.builds_up == BuildUp::LoadAlone {
             (self.viscous[lane].torque_nm(rate.abs()) * friction.viscous_factor / level.max(1e-30)).min(1.0)
