@@ -5,7 +5,7 @@
 //! ```
 //!
 //! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
-//! to the channel), n the pick-off's noise as the servo answers it, held between samples or on lines ([`super::shapes`]), b noise of low frequency with
+//! to the channel), n the pick-off's noise as the servo answers it, sampled or filtered ([`super::shapes`]), b noise of low frequency with
 //! its corner and its slope: s = 1 is flicker, which has no corner in the log or one where it ends, and which a filter may
 //! end at a higher frequency. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so that what happens now and then is no
 //! noise either.
@@ -45,8 +45,8 @@ pub struct Noise {
     pub white: f64,
     /// l.
     pub inputs: f64,
-    /// n, held between samples and on lines.
-    pub in_loop: [f64; 2],
+    /// n, held between samples, on lines, and behind a filter.
+    pub in_loop: [f64; 3],
     /// b.
     pub low: f64,
     /// Its shape.
@@ -88,8 +88,8 @@ impl Slow {
 }
 
 impl Noise {
-    pub(super) fn power(&self, hz: f64, [inputs, held, on_lines]: [f64; 3]) -> f64 {
-        let in_loop = self.in_loop[0] * held + self.in_loop[1] * on_lines;
+    pub(super) fn power(&self, hz: f64, [inputs, in_loop @ ..]: [f64; 4]) -> f64 {
+        let in_loop: f64 = self.in_loop.iter().zip(in_loop).map(|(size, shape)| size * shape).sum();
         self.white + self.inputs * inputs + in_loop + self.low * self.slow.at(hz)
     }
 
@@ -262,34 +262,34 @@ impl Bands {
     fn fitted(&self, shapes: &Shapes, most_inputs: f64, corner_hz: f64) -> (f64, Noise) {
         let from_hz = self.hz.first().copied().unwrap_or(0.0);
         let mut best =
-            (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: [0.0; 2], low: 0.0, slow: Slow::None, from_hz });
+            (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: [0.0; 3], low: 0.0, slow: Slow::None, from_hz });
         if !self.any() {
             return best;
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
-        let peaks = [peak(0), peak(1), peak(2)];
+        let peaks = [peak(0), peak(1), peak(2), peak(3)];
         for (slow, must_bring) in Slow::all() {
             let basis = |&hz: &f64| {
-                let [inputs, held, on_lines] = shapes.at(hz);
+                let [inputs, held, on_lines, filtered] = shapes.at(hz);
                 let inputs = inputs / peaks[0] * (1.0 + corner_hz / hz);
-                [1.0, inputs, held / peaks[1], on_lines / peaks[2], slow.at(hz)]
+                [1.0, inputs, held / peaks[1], on_lines / peaks[2], filtered / peaks[3], slow.at(hz)]
             };
-            let bases: Vec<[f64; 5]> = self.hz.iter().map(basis).collect();
-            let mut share = [mean, 0.1 * mean, 0.05 * mean, 0.05 * mean, 0.1 * mean];
-            let power = |share: &[f64; 5], basis: &[f64; 5]| -> f64 {
+            let bases: Vec<[f64; 6]> = self.hz.iter().map(basis).collect();
+            let mut share = [mean, 0.1 * mean, 0.03 * mean, 0.03 * mean, 0.03 * mean, 0.1 * mean];
+            let power = |share: &[f64; 6], basis: &[f64; 6]| -> f64 {
                 share.iter().zip(basis).map(|(a, b)| a * b).sum::<f64>().max(1e-300)
             };
             for _ in 0..STEPS {
-                let (mut up, mut down) = ([0.0; 5], [0.0; 5]);
+                let (mut up, mut down) = ([0.0; 6], [0.0; 6]);
                 for ((basis, measured), weight) in bases.iter().zip(&self.power).zip(&self.weight) {
                     let model = power(&share, basis);
-                    for part in 0..5 {
+                    for part in 0..6 {
                         up[part] += weight * basis[part] * measured / (model * model);
                         down[part] += weight * basis[part] / model;
                     }
                 }
-                for part in 0..5 {
+                for part in 0..6 {
                     share[part] *= up[part] / down[part].max(1e-300);
                 }
                 share[1] = share[1].min(most_inputs * peaks[0]);
@@ -305,8 +305,8 @@ impl Bands {
                 .sum();
             let unlikely = unlikely + 2.0 * must_bring;
             if unlikely < best.0 {
-                let [white, inputs, held, on_lines, low] = share;
-                let (inputs, in_loop) = (inputs / peaks[0], [held / peaks[1], on_lines / peaks[2]]);
+                let [white, inputs, in_loop @ .., low] = share;
+                let (inputs, in_loop) = (inputs / peaks[0], [0, 1, 2].map(|place| in_loop[place] / peaks[1 + place]));
                 best = (unlikely, Noise { white, inputs, in_loop, low, slow, from_hz });
             }
         }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! The servo answers what the pick-off says, noise or not: `T_m = F (theta + n)`, so `T_m = S F n` and the pick-off shows
-//! `S n`; between two samples, t apart, n is held, or on a line.
+//! `S n`; between two samples, t apart, n is held, or on a line, as it is or behind a filter of its demodulator.
 
 use std::f64::consts::{PI, TAU};
 
@@ -20,6 +20,8 @@ use crate::record::{Signal, between};
 
 /// Images of a spectrum that are summed, to either side.
 const IMAGES: i32 = 2;
+/// Where the filter of a demodulator ends, of second order [Hz].
+const FILTER_HZ: f64 = 150.0;
 
 /// The loop after an impulse of torque.
 #[derive(Debug, Clone)]
@@ -38,8 +40,8 @@ pub(crate) struct Impulse {
 pub(crate) struct Shapes {
     /// Of the logged inputs' noise.
     inputs: Vec<f64>,
-    /// Of the pick-off's in the loop, held and on lines between samples.
-    in_loop: [Vec<f64>; 2],
+    /// Of the pick-off's in the loop: held, on lines between samples, and these behind a filter.
+    in_loop: [Vec<f64>; 3],
     step_hz: f64,
 }
 
@@ -56,12 +58,16 @@ impl Shapes {
             0 => 0.0,
             _ => answer(&impulse.servo, line as f64 * step_hz, period_s, held).norm_sqr(),
         };
+        let filter = |line: usize| 1.0 / (1.0 + (line as f64 * step_hz / FILTER_HZ).powi(4));
         let in_loop = |signal: Signal| {
-            [true, false].map(|held| {
-                let of = |(line, closed): (usize, &f64)| match signal {
-                    Signal::GyroAngle => *closed,
-                    Signal::MotorTorque => closed * answer(line, held),
-                    Signal::GimbalAngle => 0.0,
+            [(true, false), (false, false), (false, true)].map(|(held, filtered)| {
+                let of = |(line, closed): (usize, &f64)| {
+                    let passed = if filtered { filter(line) } else { 1.0 };
+                    match signal {
+                        Signal::GyroAngle => closed * passed,
+                        Signal::MotorTorque => closed * passed * answer(line, held),
+                        Signal::GimbalAngle => 0.0,
+                    }
                 };
                 closed.iter().enumerate().map(of).collect()
             })
@@ -75,15 +81,15 @@ impl Shapes {
     }
 
     /// At a line.
-    pub(super) fn line(&self, line: usize) -> [f64; 3] {
-        let [held, on_lines] = &self.in_loop;
-        [self.inputs[line], held[line], on_lines[line]]
+    pub(super) fn line(&self, line: usize) -> [f64; 4] {
+        let [held, on_lines, filtered] = &self.in_loop;
+        [self.inputs[line], held[line], on_lines[line], filtered[line]]
     }
 
     /// At a frequency.
-    pub(super) fn at(&self, hz: f64) -> [f64; 3] {
-        let [held, on_lines] = &self.in_loop;
-        [&self.inputs, held, on_lines].map(|powers| between(powers, hz / self.step_hz))
+    pub(super) fn at(&self, hz: f64) -> [f64; 4] {
+        let [held, on_lines, filtered] = &self.in_loop;
+        [&self.inputs, held, on_lines, filtered].map(|powers| between(powers, hz / self.step_hz))
     }
 }
 
