@@ -1,14 +1,15 @@
 //! Power of a channel's noise over frequency, from what is left of it.
 //!
 //! ```text
-//! P(f) = w + l |G(f)|^2 + n |N(f)|^2 + b / (1 + (f / f_c)^s)         w, l, n, b >= 0     s = 2 or 1
+//! P(f) = w + l |G(f)|^2 + n |N(f)|^2 + b / (1 + (f / f_c)^s)         w, l, n, b >= 0     s = 1, 2, 4, 8
 //! ```
 //!
 //! w is the channel's own white noise, l the white noise of the logged inputs behind the loop G (torque on the gimbal
-//! to the channel), n the pick-off's noise as the servo answers it, sampled or filtered ([`super::shapes`]), b noise of low frequency with
-//! its corner and its slope: s = 1 is flicker, which has no corner in the log or one where it ends, and which a filter may
-//! end at a higher frequency. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so that what happens now and then is no
-//! noise either.
+//! to the channel), n the pick-off's noise as the servo answers it, sampled or filtered ([`super::shapes`]), b noise that
+//! ends at a corner: with s = 2 it is slow; with s = 1 it is flicker, which has no corner in the log or one where it ends,
+//! and which a lag may end at a higher frequency; with s = 4 or 8 it is white noise of a sensor behind a filter against
+//! aliasing. Only what has one of these shapes is noise. Fitted by Whittle's likelihood to medians over segments, so that
+//! what happens now and then is no noise either.
 
 use super::plans::Plans;
 use super::shapes::Shapes;
@@ -35,6 +36,9 @@ const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 
 const FLICKER_CORNERS_HZ: [f64; 3] = [0.05, 1.0, 10.0];
 const FLICKER_ENDS_HZ: [f64; 3] = [25.0, 60.0, 150.0];
 const FLICKER_NATS: f64 = 3.5;
+/// Corners of filters against aliasing, of second and of fourth order [Hz].
+const FILTERS_HZ: [f64; 13] = [80.0, 90.0, 100.0, 112.0, 125.0, 140.0, 160.0, 180.0, 200.0, 225.0, 250.0, 280.0, 320.0];
+const FILTER_ORDERS: [i32; 2] = [2, 4];
 /// Below this frequency the noise of the logged inputs may be flicker: accelerometers of which a bias wanders [Hz].
 pub(super) const INPUTS_CORNER_HZ: f64 = 5.0;
 
@@ -64,7 +68,9 @@ pub enum Slow {
     Steep(f64),
     /// `1 / (1 + f / f_c)`.
     Flicker(f64),
-    /// The same from below all logs on, behind a lag: `1 / ((1 + f / f_c) (1 + (f / f_e)^2))`, `f_e` in Hz.
+    /// `1 / (1 + (f / f_e)^(2 n))`: `f_e` in Hz, n.
+    Behind(f64, i32),
+    /// Flicker from below all logs on, behind a lag: `1 / ((1 + f / f_c) (1 + (f / f_e)^2))`, `f_e` in Hz.
     Filtered(f64),
 }
 
@@ -74,7 +80,10 @@ impl Slow {
         let steep = CORNERS_HZ.map(|corner_hz| (Self::Steep(corner_hz), SHOWN_NATS));
         let flicker = FLICKER_CORNERS_HZ.map(|corner_hz| (Self::Flicker(corner_hz), FLICKER_NATS));
         let filtered = FLICKER_ENDS_HZ.map(|end_hz| (Self::Filtered(end_hz), FLICKER_NATS));
-        std::iter::once((Self::None, 0.0)).chain(steep).chain(flicker).chain(filtered)
+        let behind = FILTER_ORDERS
+            .into_iter()
+            .flat_map(|order| FILTERS_HZ.map(|end_hz| (Self::Behind(end_hz, order), SHOWN_NATS)));
+        std::iter::once((Self::None, 0.0)).chain(steep).chain(flicker).chain(filtered).chain(behind)
     }
 
     fn at(self, hz: f64) -> f64 {
@@ -82,6 +91,7 @@ impl Slow {
             Self::None => 0.0,
             Self::Steep(corner_hz) => 1.0 / (1.0 + (hz / corner_hz).powi(2)),
             Self::Flicker(corner_hz) => 1.0 / (1.0 + hz / corner_hz),
+            Self::Behind(end_hz, order) => 1.0 / (1.0 + (hz / end_hz).powi(2 * order)),
             Self::Filtered(end_hz) => Self::Flicker(FLICKER_CORNERS_HZ[0]).at(hz) * Self::Steep(end_hz).at(hz),
         }
     }
