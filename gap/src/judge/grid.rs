@@ -14,9 +14,10 @@ const WRITTEN: f64 = 1e-4;
 /// no larger is the least count of a log, as every log has one.
 const SHOWN: f64 = 6.0;
 const LEAST_COUNT: f64 = 1.3;
-/// The same of a step that divides a power of ten by one of two, as converters of so many bits do over a full scale of 1, 2 or
-/// 5 units.
+/// A step that divides a power of ten by one of two, as converters of so many bits do over a full scale of 1, 2 or 5 units, is
+/// the log's up to so many noises; and in any case below this, as no pick-off in the loop is so fine [rad].
 const CONVERTED: f64 = 5.0;
+const FINEST_RAD: f64 = 1e-6;
 const BITS: std::ops::RangeInclusive<i32> = 10..=20;
 /// Fewest gaps.
 const LEAST: usize = 20;
@@ -40,13 +41,14 @@ pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<
     let steps: f64 = gaps.iter().map(|gap| (gap / first).round()).sum();
     let step_rad = gaps.iter().sum::<f64>() / steps;
     let over = step_rad / noise_rad;
-    let least = if BITS.into_iter().any(|bits| is_decimal(step_rad * f64::from(bits).exp2())) {
-        CONVERTED
-    } else {
-        LEAST_COUNT
-    };
-    let shown = over > least && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN;
+    let shown = over > LEAST_COUNT && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN;
     (whole > WHOLE * gaps.len() as f64 && shown && !is_decimal(step_rad)).then_some(step_rad)
+}
+
+/// Whether a step is one of a converter that writes the log, and not of the pick-off.
+pub(super) fn is_the_logs(step_rad: f64, noise_rad: f64) -> bool {
+    let converted = BITS.into_iter().any(|bits| is_decimal(step_rad * f64::from(bits).exp2()));
+    converted && (step_rad < FINEST_RAD || step_rad < CONVERTED * noise_rad)
 }
 
 /// Whether a value is a power of ten.
@@ -61,7 +63,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    use super::step_rad;
+    use super::{is_the_logs, step_rad};
 
     fn angles(step_rad: f64) -> Vec<f64> {
         let mut rng = ChaCha8Rng::seed_from_u64(1);
@@ -81,9 +83,12 @@ mod tests {
         // far below the noise, and as many digits as were written
         assert_eq!(step_rad(&angles(3e-8), &valid, 3e-7), None);
         assert_eq!(step_rad(&angles(1e-6), &valid, 3e-7), None);
-        // 16 bits over 40 mrad are a log's as long as they hardly add to the noise, and the pick-off's above
-        let bits = 40e-3 / 65_536.0;
-        assert_eq!(step_rad(&angles(bits), &valid, 3.5e-7), None);
-        assert!(step_rad(&angles(4.0 * bits), &valid, 3e-7).is_some());
+    }
+
+    #[test]
+    fn sixteen_bits_over_40_mrad_are_the_logs_and_fourteen_the_pick_offs() {
+        let bits = |bits: f64| 40e-3 / bits.exp2();
+        assert!(is_the_logs(bits(16.0), 1e-7) && is_the_logs(bits(14.0), 6e-7));
+        assert!(!is_the_logs(bits(14.0), 3e-7) && !is_the_logs(4.321e-7, 3e-7));
     }
 }

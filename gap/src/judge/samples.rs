@@ -35,4 +35,5 @@ pub(super) fn pickoff_step(problem: &Problem, fit: &Fit) -> Option<f64> {
     let (angles, noise_rad) = (&theta.values, problem.noise[0]);
     comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad)
         .or_else(|| grid::step_rad(angles, &theta.valid, noise_rad))
+        .filter(|step_rad| !grid::is_the_logs(*step_rad, noise_rad))
 }
