@@ -50,9 +50,9 @@ const ALONE: f64 = 0.4;
 pub(crate) const HELPS: f64 = 12.0;
 /// What an effect that was not worth a fit brings at most [nats].
 const HIDDEN: f64 = 3.0;
-/// What rules a set out, and whatever it takes away [nats].
+/// What rules a set out; and what does so whatever it takes away [nats].
 pub(crate) const NEVER: f64 = 1e3;
-const SAME: f64 = 1e12;
+const RULED_OUT: f64 = 1e12;
 
 /// A set of effects.
 #[derive(Debug, Clone, PartialEq)]
@@ -238,7 +238,7 @@ fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: &Tolerance)
         let (values, errors) = (&fit.values[place], &fit.errors[place]);
         let idle = if fit.is_idle(place) && !helps(search, fit, place) { NEVER } else { 0.0 };
         idle + if candidate.effect == "cable_hysteresis" && fit.effects.contains(&"presliding") {
-            rules_out(at_a_bound(candidate.effect, values, errors))
+            beside_presliding(at_a_bound(candidate.effect, values, errors))
         } else if candidate.releases.is_empty() {
             at_a_bound(candidate.effect, values, errors)
         } else if beyond(problem, tolerance, candidate.effect, values, errors) {
@@ -250,10 +250,10 @@ fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: &Tolerance)
     fit.set.0.iter().enumerate().map(of).sum()
 }
 
-/// What a bound costs where the bearing builds up over a displacement: a cable's loop that yields as soon as that does is the same in
-/// another formulation [nats].
-fn rules_out(at_a_bound: f64) -> f64 {
-    if at_a_bound > 0.0 { SAME } else { 0.0 }
+/// What a bound of a cable's loop costs where friction builds up over a displacement: one that yields as soon as that does is the
+/// same in another formulation [nats].
+fn beside_presliding(at_a_bound: f64) -> f64 {
+    if at_a_bound > 0.0 { RULED_OUT } else { 0.0 }
 }
 
 /// Whether a fit is worth more with an effect than without it, though size and shape stand for each other.
