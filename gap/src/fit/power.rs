@@ -12,7 +12,7 @@
 //! what happens now and then is no noise either.
 
 use super::plans::Plans;
-use super::shapes::Shapes;
+use super::shapes::{Shapes, passed};
 use crate::window::hann;
 
 /// Rows of a segment.
@@ -64,35 +64,32 @@ pub struct Noise {
 pub enum Slow {
     /// There is none.
     None,
-    /// `1 / (1 + (f / f_c)^2)`, `f_c` in Hz.
-    Steep(f64),
+    /// `1 / (1 + (f / f_c)^(2 n))`, `f_c` in Hz, n.
+    Steep(f64, i32),
     /// `1 / (1 + f / f_c)`.
     Flicker(f64),
-    /// `1 / (1 + (f / f_e)^(2 n))`: `f_e` in Hz, n.
-    Behind(f64, i32),
-    /// Flicker from below all logs on, behind a lag: `1 / ((1 + f / f_c) (1 + (f / f_e)^2))`, `f_e` in Hz.
+    /// The same from below all logs on, behind a lag: `1 / ((1 + f / f_c) (1 + (f / f_e)^2))`, `f_e` in Hz.
     Filtered(f64),
 }
 
 impl Slow {
     /// All that are tried, and what each must bring [nats].
     fn all() -> impl Iterator<Item = (Self, f64)> {
-        let steep = CORNERS_HZ.map(|corner_hz| (Self::Steep(corner_hz), SHOWN_NATS));
+        let steep = CORNERS_HZ.map(|corner_hz| (Self::Steep(corner_hz, 1), SHOWN_NATS));
         let flicker = FLICKER_CORNERS_HZ.map(|corner_hz| (Self::Flicker(corner_hz), FLICKER_NATS));
         let filtered = FLICKER_ENDS_HZ.map(|end_hz| (Self::Filtered(end_hz), FLICKER_NATS));
         let behind = FILTER_ORDERS
             .into_iter()
-            .flat_map(|order| FILTERS_HZ.map(|end_hz| (Self::Behind(end_hz, order), SHOWN_NATS)));
+            .flat_map(|order| FILTERS_HZ.map(|end_hz| (Self::Steep(end_hz, order), SHOWN_NATS)));
         std::iter::once((Self::None, 0.0)).chain(steep).chain(flicker).chain(filtered).chain(behind)
     }
 
     fn at(self, hz: f64) -> f64 {
         match self {
             Self::None => 0.0,
-            Self::Steep(corner_hz) => 1.0 / (1.0 + (hz / corner_hz).powi(2)),
+            Self::Steep(corner_hz, order) => passed(hz, corner_hz, order),
             Self::Flicker(corner_hz) => 1.0 / (1.0 + hz / corner_hz),
-            Self::Behind(end_hz, order) => 1.0 / (1.0 + (hz / end_hz).powi(2 * order)),
-            Self::Filtered(end_hz) => Self::Flicker(FLICKER_CORNERS_HZ[0]).at(hz) * Self::Steep(end_hz).at(hz),
+            Self::Filtered(end_hz) => Self::Flicker(FLICKER_CORNERS_HZ[0]).at(hz) * passed(hz, end_hz, 1),
         }
     }
 }
@@ -278,7 +275,7 @@ impl Bands {
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
-        let peaks = [peak(0), peak(1), peak(2), peak(3)];
+        let peaks = [0, 1, 2, 3].map(peak);
         for (slow, must_bring) in Slow::all() {
             let basis = |&hz: &f64| {
                 let [inputs, held, on_lines, filtered] = shapes.at(hz);

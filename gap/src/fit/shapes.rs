@@ -54,23 +54,18 @@ impl Shapes {
             .iter()
             .map(|torque| (1.0 - torque / impulse.torque_nm).norm_sqr())
             .collect();
-        let answer = |line: usize, held: bool| match line {
-            0 => 0.0,
-            _ => answer(&impulse.servo, line as f64 * step_hz, period_s, held).norm_sqr(),
-        };
-        let filter = |line: usize| 1.0 / (1.0 + (line as f64 * step_hz / FILTER_HZ).powi(4));
         let in_loop = |signal: Signal| {
-            [(true, false), (false, false), (false, true)].map(|(held, filtered)| {
-                let of = |(line, closed): (usize, &f64)| {
-                    let passed = if filtered { filter(line) } else { 1.0 };
-                    match signal {
-                        Signal::GyroAngle => closed * passed,
-                        Signal::MotorTorque => closed * passed * answer(line, held),
-                        Signal::GimbalAngle => 0.0,
-                    }
+            let of = |(line, closed): (usize, &f64)| {
+                let hz = line as f64 * step_hz;
+                let [held, on_lines] = match signal {
+                    Signal::GyroAngle => [1.0; 2],
+                    Signal::MotorTorque if line > 0 => answers(&impulse.servo, hz, period_s).map(|own| own.norm_sqr()),
+                    _ => [0.0; 2],
                 };
-                closed.iter().enumerate().map(of).collect()
-            })
+                [held, on_lines, on_lines * passed(hz, FILTER_HZ, 2)].map(|own| closed * own)
+            };
+            let powers: Vec<[f64; 3]> = closed.iter().enumerate().map(of).collect();
+            [0, 1, 2].map(|shape| powers.iter().map(|own| own[shape]).collect())
         };
         let shapes = |(channel, signal): (&Vec<f64>, &Signal)| Self {
             inputs: lines(channel).iter().map(Complex::norm_sqr).collect(),
@@ -93,17 +88,23 @@ impl Shapes {
     }
 }
 
-/// What sampled noise of the pick-off, held between samples or on lines, makes of the motor's torque: F at a frequency and at
+/// What sampled noise of the pick-off, held between samples and on lines, makes of the motor's torque: F at a frequency and at
 /// its images.
-fn answer(servo: &servo::Config, hz: f64, period_s: f64, held: bool) -> Complex<f64> {
-    let image = |number: i32| {
-        let hz = hz - f64::from(number) / period_s;
-        let turn = PI * hz * period_s;
+fn answers(servo: &servo::Config, hz: f64, period_s: f64) -> [Complex<f64>; 2] {
+    let mut answers = [Complex::ZERO; 2];
+    for image in -IMAGES..=IMAGES {
+        let hz = hz - f64::from(image) / period_s;
+        let (turn, own) = (PI * hz * period_s, transfer(servo, hz));
         let sinc = turn.sin() / turn;
-        let between = if held { Complex::from_polar(sinc, -turn) } else { Complex::from(sinc * sinc) };
-        transfer(servo, hz) * between
-    };
-    (-IMAGES..=IMAGES).map(image).sum()
+        answers[0] += own * Complex::from_polar(sinc, -turn);
+        answers[1] += own * (sinc * sinc);
+    }
+    answers
+}
+
+/// Power that a Butterworth filter of so many poles passes.
+pub(super) fn passed(hz: f64, end_hz: f64, poles: i32) -> f64 {
+    1.0 / (1.0 + (hz / end_hz).powi(2 * poles))
 }
 
 /// F at a frequency [N m/rad].
@@ -120,7 +121,7 @@ mod tests {
     use gimbal_servo::Config;
     use realfft::num_complex::Complex;
 
-    use super::{answer, transfer};
+    use super::{answers, transfer};
 
     #[test]
     fn closed_form_a_slow_sample_is_answered_as_what_is_continuous() {
@@ -128,8 +129,9 @@ mod tests {
         for hz in [0.1, 0.3] {
             let exact = transfer(&servo, hz);
             let late = Complex::from_polar(1.0, -std::f64::consts::PI * hz * 1e-3);
-            assert!((answer(&servo, hz, 1e-3, false) / exact - 1.0).norm() < 0.01, "{hz}");
-            assert!((answer(&servo, hz, 1e-3, true) / (exact * late) - 1.0).norm() < 0.05, "{hz}");
+            let [held, on_lines] = answers(&servo, hz, 1e-3);
+            assert!((on_lines / exact - 1.0).norm() < 0.01, "{hz}");
+            assert!((held / (exact * late) - 1.0).norm() < 0.05, "{hz}");
         }
     }
 }

@@ -120,10 +120,10 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         .collect();
     let counts = if problem.turns_mostly { 1.0 } else { AGREED_COUNTS };
     let inputs_nm = torque_of_inputs(problem, fit);
-    let gain = agreement(problem, fit, inputs_nm).powi(2);
+    let gain = agreement(problem, fit, &away, inputs_nm).powi(2);
     strangers.push(Stranger { of: AT_RANDOM, gain, torques: 1, choice: 0.0, counts });
     if !problem.turns_mostly {
-        let gain = 2.0 * problem.torque_at_random(&fit.residual, &steady(problem), INPUTS_KNOWN * inputs_nm);
+        let gain = 2.0 * problem.torque_at_random(&fit.residual, &away, INPUTS_KNOWN * inputs_nm);
         strangers.push(Stranger { of: LIKE_NOISE, gain, torques: 1, choice: 0.0, counts: LIKE_NOISE_COUNTS });
     }
     strangers.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
@@ -156,10 +156,10 @@ fn told_by(before: &[f64], after: &[f64], rows: &[bool]) -> f64 {
 
 /// How far the channels agree on a torque, in standard deviations, beyond what noise of the logged inputs is to the
 /// gimbal; none of it where the bearing turns around.
-fn agreement(problem: &Problem, fit: &Fit, inputs_nm: f64) -> f64 {
+fn agreement(problem: &Problem, fit: &Fit, steady: &[bool], inputs_nm: f64) -> f64 {
     let mut residual = fit.residual.clone();
     let rows = residual.chunks_exact_mut(problem.record.channels.len());
-    for (row, _) in rows.zip(steady(problem)).filter(|(_, steady)| !steady) {
+    for (row, _) in rows.zip(steady).filter(|(_, steady)| !**steady) {
         row.fill(0.0);
     }
     problem.path.agreement(&problem.whitener, &residual, AGREED_HZ, inputs_nm).max(0.0)

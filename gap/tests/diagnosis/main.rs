@@ -1,7 +1,8 @@
 //! The diagnosis on logs from the reference plant.
 
-#[path = "../examples/corpus/mod.rs"]
+#[path = "../../examples/corpus/mod.rs"]
 mod corpus;
+mod noise;
 
 use corpus::{Case, Excitation, as_log, simulate};
 use gimbal_gap::report::json;
@@ -300,30 +301,6 @@ fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
     assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
 }
 
-/// The noise of a rate is torque wherever the bearing turns around: a loop a few per cent off rings otherwise after it.
-#[test]
-fn turns_of_a_platform_anywhere_in_its_tolerance_show_nothing() {
-    for (excitation, seed) in [(Excitation::RateTable, 500_198), (Excitation::Flight, 500_032)] {
-        let (platform, effects) = corpus::anywhere(seed);
-        let case = Case { seed, excitation, seconds: SECONDS, effects, drift: 0.0, noise: 1.0 };
-        let log = as_log(&corpus::simulate_platform(&case, &platform).converted());
-        let diagnosis = diagnose(&log, &ModelFile::default());
-        assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{seed}: {:?}", names(&diagnosis));
-    }
-}
-
-/// Its lines are in what drives the platform, whatever their frequency.
-#[test]
-fn vibration_near_a_frequency_of_the_mains_is_no_hum() {
-    for seed in [710_005, 710_008] {
-        let (platform, effects) = corpus::anywhere(seed);
-        let case = Case { seed, excitation: Excitation::Flight, seconds: SECONDS, effects, drift: 0.0, noise: 1.0 };
-        let diagnosis =
-            diagnose(&as_log(&corpus::simulate_platform(&case, &platform).converted()), &ModelFile::default());
-        assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{seed}: {:#}", report(&diagnosis)["notes"]);
-    }
-}
-
 /// With `phi' + e w_x` for `phi'`, which the gyro sees, the equations are those of a platform whose vehicle turns by `e w_x` more
 /// and on which the torque `Jg e w_x'` acts.
 #[test]
@@ -344,34 +321,4 @@ fn a_gyro_out_of_line_goes_with_the_cross_rate() {
     assert_eq!(report(&diagnosis)["verdict"], "unexplained", "{:?}", names(&diagnosis));
     let decision = diagnosis.decision.as_ref().expect("a decision");
     assert_eq!(decision.goes_with().map(|stranger| stranger.of), Some("cross rate, to the gyro"));
-}
-
-/// Noise through a Butterworth filter of fourth order, its sections by the bilinear transform.
-fn behind_a_filter(noise: &[f64], end_hz: f64) -> Vec<f64> {
-    let tangent = (std::f64::consts::PI * end_hz * 1e-3).tan();
-    let mut passed = noise.to_vec();
-    for quality in [0.5412, 1.3066] {
-        let scale = 1.0 / (1.0 + tangent / quality + tangent * tangent);
-        let gain = tangent * tangent * scale;
-        let back = [2.0 * (tangent * tangent - 1.0) * scale, (1.0 - tangent / quality + tangent * tangent) * scale];
-        let (mut given, mut last) = ([0.0; 2], [0.0; 2]);
-        for value in &mut passed {
-            let own = gain * (*value + 2.0 * given[0] + given[1]) - back[0] * last[0] - back[1] * last[1];
-            (given, last) = ([*value, given[0]], [own, last[0]]);
-            *value = own;
-        }
-    }
-    passed
-}
-
-#[test]
-fn noise_of_a_sensor_behind_a_filter_is_noise() {
-    let mut log = log_with(Excitation::Flight, &[]);
-    let mut rng = corpus::rng(23, 7);
-    let torque_nm = log.column(Column::MotorTorque).expect("the torque").to_vec();
-    let noise: Vec<f64> = torque_nm.iter().map(|_| 8e-5 * rng.sample::<f64, _>(StandardNormal)).collect();
-    let noisy = torque_nm.iter().zip(behind_a_filter(&noise, 150.0)).map(|(torque, noise)| torque + noise);
-    log.set(Column::MotorTorque, noisy.collect());
-    let diagnosis = diagnose(&log, &ModelFile::default());
-    assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:#}", report(&diagnosis)["notes"]);
 }
