@@ -1,0 +1,47 @@
+//! Commands of the servo as the drive gets them: late, or held while the servo drops out.
+
+use super::{Machine, THETA};
+
+fn inside(spans: &[(f64, f64)], time_s: f64) -> bool {
+    spans.iter().any(|(from, to)| (*from..*to).contains(&time_s))
+}
+
+impl Machine<'_> {
+    /// Keeps the command at the start of a step, for the delay, and what changes only from step to step.
+    pub(super) fn note_command(&mut self, time_s: f64) {
+        let drive = &self.truth.drive;
+        if drive.delay_s > 0.0 || !drive.frozen_s.is_empty() {
+            let command = self.compensator.output_nm(&Self::servo(&self.states), self.seen(self.states[THETA]));
+            if self.history.is_empty() {
+                self.history = vec![command; 4];
+            }
+            self.history.push(command);
+            if self.history.len() > 65_536 {
+                self.history.drain(..32_768);
+            }
+            self.frozen_nm = if inside(&drive.frozen_s, time_s) { self.frozen_nm.or(Some(command)) } else { None };
+        }
+        self.contact_now = self.truth.torque.contact.as_ref().is_some_and(|contact| inside(&contact.spans_s, time_s));
+    }
+
+    /// The command `delay` ago, `offset_s` into a step.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few thousand steps at most
+    pub(super) fn delayed(&self, command: f64, command_rate: f64, offset_s: f64) -> f64 {
+        let delay_s = self.truth.drive.delay_s;
+        let step_s = self.track.period_s / self.steps_per_row as f64;
+        if delay_s < step_s {
+            return command - delay_s * command_rate;
+        }
+        // steps before the start of the present one, at least 0
+        let back = (delay_s - offset_s) / step_s;
+        let newest = self.history.len() - 1;
+        let whole = (back.floor().max(0.0) as usize).min(newest.saturating_sub(3));
+        // cubic through four old commands; `place` counts back from the newest of the four
+        let first = whole.saturating_sub(1);
+        let place = back - first as f64;
+        let value = |index: usize| self.history[newest.saturating_sub(first + index)];
+        let [p, q, r, s] = [place, place - 1.0, place - 2.0, place - 3.0];
+        value(0) * q * r * s / -6.0 + value(1) * p * r * s / 2.0 - value(2) * p * q * s / 2.0
+            + value(3) * p * q * r / 6.0
+    }
+}
