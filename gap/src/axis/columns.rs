@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use gimbal_model_file::AxisModel;
 
-use super::follows::{follows, lateness_error};
+use super::follows::{first_order, follows, lateness_error};
 use super::judge::BEYOND;
 use super::library::rms;
 use super::motion::{Motion, MotionFrom, NARROW};
@@ -150,10 +150,11 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
             let surely_late = both.late_rows - SURE * lateness_error(&rate, &logged, &both, log);
             if surely_late > LATE && !model.trusts("velocity_delay") {
                 let late_s = both.late_rows * log.period_s;
-                checked.words.push(format!(
-                    "{velocity_name} is {:.1} ms late: a filter, a difference over several rows, or an older sample",
-                    1e3 * late_s
-                ));
+                let why = first_order(&rate, &logged, &both, &log.valid).map_or_else(
+                    || "a filter, a difference over several rows, or an older sample".to_owned(),
+                    |rows| format!("a filter of first order, time constant {:.1} ms", rows * period_ms),
+                );
+                checked.words.push(format!("{velocity_name} is {:.1} ms late: {why}", 1e3 * late_s));
                 checked.faults.push(ColumnFault {
                     effect: "velocity_delay",
                     parameters: vec![("delay", late_s, 0.1 * log.period_s, "s".to_owned())],

@@ -14,6 +14,9 @@ use super::unseen;
 use crate::judge::Verdict;
 use crate::place::{Band, Span, Spectrum};
 
+/// How far from one the number of waves a turn of gravity may be.
+const ONE_A_TURN: f64 = 0.15;
+
 /// Lines over time for the page: time, effort, nominal model, with effects; and the residuals.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lines {
@@ -254,6 +257,11 @@ fn remarks(found: &[Found], model: &AxisModel, balance: &Balance) -> Vec<String>
                 .to_owned(),
         );
     }
+    if found.iter().any(|found| found.effect == "torque_ripple" && is_one_a_turn(found)) {
+        notes.push(
+            "torque_ripple of one wave a turn is what gravity does to an arm whose axis is not upright".to_owned(),
+        );
+    }
     if named("torque_scale") {
         notes.push(
             "torque_scale is a common factor of inertia and friction: the force constant, or all of them; told apart by a \
@@ -274,6 +282,11 @@ fn remarks(found: &[Found], model: &AxisModel, balance: &Balance) -> Vec<String>
         notes.push(format!("this log cannot show: {}", balance.hidden.join(", ")));
     }
     notes
+}
+
+/// Whether a ripple has one wave a turn, but for what an arm that is itself moved adds.
+fn is_one_a_turn(found: &Found) -> bool {
+    found.parameters.iter().any(|own| own.name == "waves_per_turn" && (own.value - 1.0).abs() < ONE_A_TURN)
 }
 
 /// What an offset would leave in the place of friction that is larger one way: at one speed they are one.

@@ -45,6 +45,7 @@ pub(crate) use refit::rebase;
 pub use refit::{refit, without};
 pub use search::{Search, Set, null, search};
 pub(crate) use search::{ended, look};
+pub(crate) use shapes::servo_answer;
 pub(crate) use signals::{difference, of_channel, predicted, residual as raw_residual};
 pub(crate) use tried::Tried;
 pub use whiten::Whitener;

@@ -88,6 +88,11 @@ impl Shapes {
     }
 }
 
+/// What the motor's torque makes of a pick-off's samples, on lines between them [N m/rad].
+pub(crate) fn servo_answer(servo: &servo::Config, hz: f64, period_s: f64) -> Complex<f64> {
+    answers(servo, hz, period_s)[1]
+}
+
 /// What sampled noise of the pick-off, held between samples and on lines, makes of the motor's torque: F at a frequency and at
 /// its images.
 fn answers(servo: &servo::Config, hz: f64, period_s: f64) -> [Complex<f64>; 2] {

@@ -5,7 +5,7 @@ use gimbal_plant::Effect;
 
 use super::left_over::left_over;
 use super::probability::{Probabilities, SetProbability};
-use super::samples::{pickoff_step, stop_change};
+use super::samples::{steps, stop_change};
 use super::strange::{Stranger, strangers};
 use super::weigh::{Weighed, best, caution, hidden_beside, holds, moves_freely, weigh};
 use crate::fit::{Fit, Problem, Search};
@@ -171,7 +171,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let nominal = worthy.is_none().then(|| strangers(problem, &search.null));
     let shown = || {
         nominal.as_ref().is_some_and(|nominal| strongest(nominal) > limits.strange)
-            || pickoff_step(problem, &search.null).is_some()
+            || steps(problem, &search.null).is_some_and(|steps| steps.of_pickoff)
     };
     // a gap that torques of no effect show, or the pick-off's steps, is none that the effect has to show
     let likely = |set: &Weighed| if set.acts_on_float() { 0.0 } else { set.nats - set.rare };
@@ -189,8 +189,8 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let share = strange / (strange + taken).max(1e-9);
     let unknown = left.max(unknown(strangeness(strange, limits.strange, limits.strange_scale), share, found));
     // what a quantised pick-off leaves is no reason to take back what brings all that a verdict asks for
-    let step = pickoff_step(problem, fit);
-    let stepped = sure && unknown > UNEXPLAINED[1] && step.is_some() && after < ROUGH;
+    let steps = steps(problem, fit);
+    let stepped = sure && unknown > UNEXPLAINED[1] && steps.is_some() && after < ROUGH;
     let unknown = if stepped { SHOWN } else { unknown };
     let hidden = best.map_or_else(Vec::new, |best| hidden_beside(problem, search, &sets, best));
     let told = [&sets[..], &hidden].concat();
@@ -229,7 +229,8 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
         decision.notes.push(format!("what is left goes with {stranger}"));
     }
     decision.notes.extend(like_a_bias(problem, &decision.found));
-    direct(problem, step, tolerance, &mut decision);
+    let step_rad = steps.filter(|steps| steps.of_pickoff).map(|steps| steps.step_rad);
+    direct(problem, step_rad, tolerance, &mut decision);
     decision
 }
 
@@ -280,7 +281,7 @@ pub(crate) fn strangeness(nats: f64, limit: f64, scale: f64) -> f64 {
 }
 
 /// What the samples show by themselves: a stop elsewhere, as the pick-off reads it, and a grid of angles.
-fn direct(problem: &Problem, step: Option<f64>, tolerance: &Tolerance, decision: &mut Decision) {
+fn direct(problem: &Problem, step_rad: Option<f64>, tolerance: &Tolerance, decision: &mut Decision) {
     let scale = |found: &Found| if found.effect == "pickoff_scale" { found.values[0] } else { 0.0 };
     let pickoff = 1.0 + decision.found.iter().map(scale).sum::<f64>();
     let mut add = |effect: &'static str, value: f64, error: f64, probability: f64| {
@@ -311,7 +312,7 @@ fn direct(problem: &Problem, step: Option<f64>, tolerance: &Tolerance, decision:
     if let Some((change, error)) = stop_change(problem, pickoff, tolerance) {
         add("stop_angle", change, error, 0.95);
     }
-    if let Some(step) = step {
-        add("pickoff_quantisation", step, 1e-3 * step, 0.97);
+    if let Some(step_rad) = step_rad {
+        add("pickoff_quantisation", step_rad, 1e-3 * step_rad, 0.97);
     }
 }

@@ -1,6 +1,8 @@
 //! `pickoff_quantisation` as a converter makes it of an angle that has its noise already: every sample is a multiple of the
 //! step, however fine that is. What is on a grid by how many digits were written is not told.
 
+use std::f64::consts::TAU;
+
 /// Of the gaps between neighbouring angles, the one that is taken for the step; how far from a whole number of steps a gap
 /// may be, and how many steps a gap may have to say so.
 const SMALL: f64 = 0.1;
@@ -15,7 +17,7 @@ const WRITTEN: f64 = 1e-4;
 const SHOWN: f64 = 6.0;
 const LEAST_COUNT: f64 = 1.3;
 /// A step that divides a power of ten by one of two, as converters of so many bits do over a full scale of 1, 2 or 5 units, is
-/// the log's up to so many noises; and in any case below this, as no pick-off in the loop is so fine [rad].
+/// the log's up to so many noises; and any below this, as no pick-off in the loop is so coarse for so little [rad].
 const CONVERTED: f64 = 5.0;
 const FINEST_RAD: f64 = 1e-6;
 const BITS: std::ops::RangeInclusive<i32> = 10..=20;
@@ -45,10 +47,19 @@ pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<
     (whole > WHOLE * gaps.len() as f64 && shown && !is_decimal(step_rad)).then_some(step_rad)
 }
 
-/// Whether a step is one of a converter that writes the log, and not of the pick-off.
+/// Angles as the steps have them, without what was added behind: the multiples of the step, counted from where most are.
+pub(super) fn on_grid(theta: &[f64], valid: &[bool], step_rad: f64) -> Vec<f64> {
+    let waves =
+        theta.iter().zip(valid).filter(|(_, valid)| **valid).map(|(angle, _)| (TAU * angle / step_rad).sin_cos());
+    let (sin, cos) = waves.fold((0.0, 0.0), |sum, (sin, cos)| (sum.0 + sin, sum.1 + cos));
+    let first_rad = f64::atan2(sin, cos) / TAU * step_rad;
+    theta.iter().map(|angle| first_rad + ((angle - first_rad) / step_rad).round() * step_rad).collect()
+}
+
+/// Whether a step that the motor torque does not tell is one of a converter that writes the log, and not of the pick-off.
 pub(super) fn is_the_logs(step_rad: f64, noise_rad: f64) -> bool {
     let converted = BITS.into_iter().any(|bits| is_decimal(step_rad * f64::from(bits).exp2()));
-    converted && (step_rad < FINEST_RAD || step_rad < CONVERTED * noise_rad)
+    step_rad < FINEST_RAD || converted && step_rad < CONVERTED * noise_rad
 }
 
 /// Whether a value is a power of ten.
@@ -89,6 +100,16 @@ mod tests {
     fn sixteen_bits_over_40_mrad_are_the_logs_and_fourteen_the_pick_offs() {
         let bits = |bits: f64| 40e-3 / bits.exp2();
         assert!(is_the_logs(bits(16.0), 1e-7) && is_the_logs(bits(14.0), 6e-7));
-        assert!(!is_the_logs(bits(14.0), 3e-7) && !is_the_logs(4.321e-7, 3e-7));
+        assert!(!is_the_logs(bits(14.0), 3e-7) && !is_the_logs(4.321e-6, 3e-6));
+        assert!(is_the_logs(4.321e-7, 3e-7));
+    }
+
+    #[test]
+    fn angles_go_back_to_the_steps_that_they_were_on() {
+        let stepped = |k: i32| 2e-7 + 3e-6 * f64::from(k / 10);
+        let noisy: Vec<f64> = (0..1000).map(|k| stepped(k) + 4e-7 * f64::from(k % 3 - 1)).collect();
+        let back = super::on_grid(&noisy, &vec![true; 1000], 3e-6);
+        let worst = (0..1000).zip(&back).map(|(k, angle)| (angle - stepped(k)).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-8, "{worst}");
     }
 }

@@ -9,6 +9,8 @@ mod detectable;
 mod experiment;
 mod grid;
 mod group;
+mod in_loop;
+mod input_noise;
 mod left_over;
 mod lines;
 mod moments;

@@ -4,6 +4,7 @@ use gimbal_model_file::Tolerance;
 
 use super::comb;
 use super::grid;
+use super::in_loop::loop_sees;
 use super::weigh::BEYOND;
 use crate::fit::{Fit, Problem};
 use crate::record::{Channel, Signal};
@@ -29,11 +30,20 @@ pub(super) fn least_stop_change(tolerance: &Tolerance) -> f64 {
     BEYOND * (tolerance.stop_angle + tolerance.pickoff_scale)
 }
 
-/// The step of the pick-off, where its samples show one [rad].
-pub(super) fn pickoff_step(problem: &Problem, fit: &Fit) -> Option<f64> {
+/// Steps on which the samples of the pick-off lie [rad].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Steps {
+    pub(super) step_rad: f64,
+    /// Whether they are the pick-off's, and not of what writes the log.
+    pub(super) of_pickoff: bool,
+}
+
+/// The steps of the samples, where they show some.
+pub(super) fn steps(problem: &Problem, fit: &Fit) -> Option<Steps> {
     let theta = problem.record.channel(Signal::GyroAngle)?;
     let (angles, noise_rad) = (&theta.values, problem.noise[0]);
-    comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad)
-        .or_else(|| grid::step_rad(angles, &theta.valid, noise_rad))
-        .filter(|step_rad| !grid::is_the_logs(*step_rad, noise_rad))
+    let step_rad = comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad)
+        .or_else(|| grid::step_rad(angles, &theta.valid, noise_rad))?;
+    let of_pickoff = loop_sees(problem, fit, step_rad).unwrap_or_else(|| !grid::is_the_logs(step_rad, noise_rad));
+    Some(Steps { step_rad, of_pickoff })
 }

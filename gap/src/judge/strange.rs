@@ -18,10 +18,10 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::group::On;
+use super::input_noise::torque_of_inputs;
 use super::left_over::steady;
 use super::torques::groups;
 use crate::fit::{Fit, Linear, Problem, Solution, gram, slices, solve};
-use crate::record::rough;
 
 /// Amplitude that a torque must have beside those before it, over its own: of torques that are nearly alike a difference as
 /// large as nothing makes them takes what no torque does.
@@ -32,10 +32,6 @@ const LIKE_NOISE: &str = "a torque at random, more than the noise of the logged 
 const AGREED_HZ: f64 = 32.0;
 /// How many times the torque that it seems to make the noise of the logged inputs may be taken for.
 const INPUTS_KNOWN: f64 = 2.0;
-/// Parts of the log, in one of which no vibration hides the noise of the specific force, and what that is at most at
-/// these rates [m/s^2]: 90 ug/sqrt(Hz) up to 500 Hz.
-const PARTS: usize = 20;
-const ACCEL_NOISE_MPS2: f64 = 0.02;
 /// What one nat of it counts where the bearing seldom turns around: no effect in another formulation leaves it.
 const AGREED_COUNTS: f64 = 2.0;
 /// The same of the power of one sensor, whose own noise may have a spectrum not unlike it.
@@ -119,7 +115,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         })
         .collect();
     let counts = if problem.turns_mostly { 1.0 } else { AGREED_COUNTS };
-    let inputs_nm = torque_of_inputs(problem, fit);
+    let inputs_nm = torque_of_inputs(problem, fit, &away);
     let gain = agreement(problem, fit, &away, inputs_nm).powi(2);
     strangers.push(Stranger { of: AT_RANDOM, gain, torques: 1, choice: 0.0, counts });
     if !problem.turns_mostly {
@@ -165,20 +161,6 @@ fn agreement(problem: &Problem, fit: &Fit, steady: &[bool], inputs_nm: f64) -> f
     problem.path.agreement(&problem.whitener, &residual, AGREED_HZ, inputs_nm).max(0.0)
 }
 
-/// What noise of the logged specific force is to the unbalance [N m].
-fn torque_of_inputs(problem: &Problem, fit: &Fit) -> f64 {
-    let unbalance = &fit.physics.config.unbalance;
-    let accel_mps2 = problem.record.inputs.accel_mps2.iter();
-    let noise_mps2 = accel_mps2.map(|axis| quietest(axis)).fold(0.0, f64::max).min(ACCEL_NOISE_MPS2);
-    unbalance.x_kg_m.hypot(unbalance.y_kg_m) * noise_mps2
-}
-
-/// Noise of a signal where it is quietest: elsewhere vibration is like noise.
-fn quietest(values: &[f64]) -> f64 {
-    let part = values.len().div_ceil(PARTS).max(1);
-    values.chunks(part).map(|part| rough(part, &vec![true; part.len()])).fold(f64::MAX, f64::min)
-}
-
 /// Columns without those that the ones before them nearly make.
 fn apart(columns: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
     let rows = columns.first().map_or(0, Vec::len);
@@ -198,15 +180,7 @@ fn apart(columns: Vec<Vec<f32>>) -> Vec<Vec<f32>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{apart, quietest};
-
-    #[test]
-    fn vibration_of_most_of_a_log_is_no_noise() {
-        let noise = |k: u32| f64::from(k.wrapping_mul(2_654_435_769) >> 16) / 65_536.0 - 0.5;
-        let vibration = |k: u32| if k < 18_000 { (0.9 * f64::from(k)).sin() } else { 0.0 };
-        let values: Vec<f64> = (0..20_000).map(|k| 0.01 * noise(k) + vibration(k)).collect();
-        assert!(quietest(&values) < 0.01, "{}", quietest(&values));
-    }
+    use super::apart;
 
     #[test]
     fn columns_that_others_make_are_left_out() {

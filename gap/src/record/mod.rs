@@ -1,7 +1,9 @@
 //! A log made ready: one grid, inputs filled in, outputs with a mask, and what is wrong with the data.
 
 mod channel;
+mod colour;
 mod faults;
+mod grid;
 mod hum;
 mod part;
 mod plateau;
@@ -15,8 +17,10 @@ use std::ops::Range;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
+use self::grid::{Grid, filled};
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
+pub(crate) use colour::{COLOURED, colour};
 pub use faults::{Data, faults};
 pub(crate) use part::BEGINNING_S;
 pub(crate) use plateau::{LEAST_STOP, peak_rad, plateau};
@@ -73,6 +77,7 @@ impl Record {
         let report = &log.time;
         let period_s = if report.period_s > 0.0 { report.period_s } else { 1e-3 };
         let grid = Grid::new(time, period_s);
+        let period_s = grid.period_s;
         if report.jitter_rms_s > 0.05 * period_s {
             faults.push(format!(
                 "the time stamps jitter by {:.2} ms rms: samples are not where they claim to be",
@@ -250,68 +255,6 @@ fn away(on_stop: &[bool], [comes, settles]: [usize; 2], least: usize) -> Vec<Ran
         free.push(from..rows);
     }
     free
-}
-
-/// Where the rows of a log stand on an even grid.
-struct Grid {
-    places: Vec<usize>,
-    rows: usize,
-    filled: usize,
-}
-
-impl Grid {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-    fn new(time: &[f64], period_s: f64) -> Self {
-        let first = time.first().copied().unwrap_or(0.0);
-        let places: Vec<usize> =
-            time.iter().map(|time| ((time - first) / period_s).round().max(0.0) as usize).collect();
-        let rows = places.last().map_or(0, |last| last + 1).min(20 * time.len().max(1));
-        Self { filled: rows.saturating_sub(time.len()), places, rows }
-    }
-
-    /// Values on the grid; NaN where there is none.
-    fn place(&self, values: &[f64]) -> Vec<f64> {
-        let mut placed = vec![f64::NAN; self.rows];
-        for (place, value) in self.places.iter().zip(values) {
-            if let Some(slot) = placed.get_mut(*place) {
-                *slot = *value;
-            }
-        }
-        placed
-    }
-}
-
-/// Straight lines over missing samples.
-fn filled(values: &[f64]) -> Vec<f64> {
-    let mut out = values.to_vec();
-    let mut last: Option<usize> = None;
-    for k in 0..out.len() {
-        if !out[k].is_finite() {
-            continue;
-        }
-        match last {
-            None => {
-                let value = out[k];
-                out[..k].fill(value);
-            }
-            Some(from) if k > from + 1 => {
-                for between in from + 1..k {
-                    let share = (between - from) as f64 / (k - from) as f64;
-                    out[between] = out[from] + share * (out[k] - out[from]);
-                }
-            }
-            Some(_) => {}
-        }
-        last = Some(k);
-    }
-    match last {
-        Some(from) => {
-            let value = out[from];
-            out[from..].fill(value);
-        }
-        None => out.fill(0.0),
-    }
-    out
 }
 
 fn deviation(values: &[f64]) -> f64 {

@@ -15,6 +15,7 @@ use realfft::RealFftPlanner;
 use crate::window::hann;
 
 use super::Record;
+use super::colour::colour;
 use super::rough::rough;
 use crate::simulate::{Inputs, Physics, Prediction, predict};
 
@@ -82,11 +83,14 @@ pub struct RateNoise {
     pub rms_radps: f64,
     /// W from zero to half the sampling rate, evenly.
     pub pass: Vec<f64>,
+    /// How much more power it has where it is slower: its mean over rows is then more than they let expect.
+    pub colour: f64,
 }
 
 impl RateNoise {
     pub(super) fn logged(rate_radps: &[f64]) -> Self {
-        Self { rms_radps: rough(rate_radps, &vec![true; rate_radps.len()]), pass: vec![1.0] }
+        let rms_radps = rough(rate_radps, &vec![true; rate_radps.len()]);
+        Self { rms_radps, pass: vec![1.0], colour: colour(rate_radps) }
     }
 
     /// W at a share of half the sampling rate.

@@ -20,6 +20,7 @@ mod predict;
 mod running;
 mod sprung;
 
+pub(crate) use bearing::{Viscous, load_nm};
 pub use begin::Begin;
 pub(crate) use chain::{ANGLES, TORQUES};
 pub use corner::Corner;

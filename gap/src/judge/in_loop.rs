@@ -1,0 +1,91 @@
+//! Whether the loop sees the steps of its pick-off, or the log alone has them: what the servo makes of a step of q is in
+//! the motor torque.
+//!
+//! ```text
+//! e = theta on the grid - prediction        x = F e        T_m - prediction = share x + noise
+//! ```
+//!
+//! beyond `LEAST_HZ`, where the loop is open, and at rows about which theta moves less than half a step: elsewhere the loop saw
+//! what is between the rows. A share of one is a pick-off that steps, one of zero a converter behind it.
+
+use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
+
+use super::grid::on_grid;
+use crate::fit::{Fit, Problem, servo_answer};
+use crate::record::Signal;
+
+/// Where the loop is open [Hz], and the share of the sampling rate from which on what is left is looked at.
+const LEAST_HZ: f64 = 60.0;
+const LEAST_SHARE: f64 = 0.125;
+/// Share of a step by which theta may move from row to row.
+const SLOW: f64 = 0.5;
+/// Fewest rows.
+const LEAST_ROWS: usize = 60;
+/// Share from which on the loop sees the steps: of angles that lie on them, and of those to which noise is added behind, some of
+/// which go back to a wrong one; and standard errors by which it must be away from that, or from none.
+const SEEN: f64 = 0.6;
+const SEEN_BEHIND_NOISE: f64 = 0.1;
+const SURE: f64 = 4.0;
+/// How far angles may be from the steps that they lie on, over the step.
+const ON_STEPS: f64 = 0.02;
+
+/// Whether the loop sees steps of this size; none where this log does not tell.
+pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<bool> {
+    let theta = problem.record.channel(Signal::GyroAngle)?;
+    let torque = problem.record.channel(Signal::MotorTorque)?;
+    let period_s = problem.record.inputs.period_s;
+    let predicted = &fit.prediction.gyro_angle_rad;
+    let rows = predicted.len();
+    let on_grid = on_grid(&theta.values, &theta.valid, step_rad);
+    let moves = |k: usize| (predicted[k] - predicted[k - 1]).abs() > SLOW * step_rad;
+    let told = |k: usize| k > 0 && theta.valid[k] && torque.valid[k] && !moves(k) && (k + 1 == rows || !moves(k + 1));
+    let slow: Vec<usize> = (0..rows).filter(|&k| told(k)).collect();
+    if slow.len() < LEAST_ROWS {
+        return None;
+    }
+    let left = |valid: bool, of: f64| if valid { of } else { 0.0 };
+    let errors: Vec<f64> = (0..rows).map(|k| left(theta.valid[k], on_grid[k] - predicted[k])).collect();
+    let torques: Vec<f64> =
+        (0..rows).map(|k| left(torque.valid[k], torque.values[k] - fit.prediction.motor_torque_nm[k])).collect();
+    let least_hz = LEAST_HZ.max(LEAST_SHARE / period_s);
+    let fast = |hz: f64| Complex::from(if hz < least_hz { 0.0 } else { 1.0 });
+    let errors = filtered(&errors, period_s, fast)?;
+    let torques = filtered(&torques, period_s, fast)?;
+    let mut about = vec![0.0; rows];
+    for &k in &slow {
+        about[k] = errors[k];
+    }
+    let answer = |hz: f64| fast(hz) * servo_answer(&fit.physics.config.servo, hz.max(least_hz), period_s);
+    let answers = filtered(&about, period_s, answer)?;
+    let with: f64 = slow.iter().map(|&k| answers[k] * torques[k]).sum();
+    let square: f64 = slow.iter().map(|&k| answers[k] * answers[k]).sum();
+    let share = with / square;
+    let rest: f64 = slow.iter().map(|&k| (torques[k] - share * answers[k]).powi(2)).sum();
+    let error = (rest / slow.len() as f64 / square).sqrt();
+    let off: f64 = slow.iter().map(|&k| (theta.values[k] - on_grid[k]).powi(2)).sum();
+    let lies_on_steps = (off / slow.len() as f64).sqrt() < ON_STEPS * step_rad;
+    let least = if lies_on_steps { SEEN } else { SEEN_BEHIND_NOISE };
+    let seen = share > least && share > SURE * error;
+    (seen || share + SURE * error < least).then_some(seen)
+}
+
+/// A series through a filter.
+fn filtered(series: &[f64], period_s: f64, filter: impl Fn(f64) -> Complex<f64>) -> Option<Vec<f64>> {
+    let length = (2 * series.len()).next_power_of_two();
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (there, back) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
+    let mut padded = there.make_input_vec();
+    padded[..series.len()].copy_from_slice(series);
+    let mut lines = there.make_output_vec();
+    there.process(&mut padded, &mut lines).ok()?;
+    let step_hz = 1.0 / (length as f64 * period_s);
+    for (line, value) in lines.iter_mut().enumerate() {
+        *value *= filter(line as f64 * step_hz) / length as f64;
+    }
+    let last = lines.len() - 1;
+    (lines[0].im, lines[last].im) = (0.0, 0.0);
+    back.process(&mut lines, &mut padded).ok()?;
+    padded.truncate(series.len());
+    Some(padded)
+}

@@ -1,0 +1,78 @@
+//! What noise of the logged inputs is to the gimbal, away from where the bearing turns around [N m]:
+//!
+//! ```text
+//! s^2 = mean of sum over x, y, z (n_a dT/da)^2 + (n_w dT/dw)^2
+//! dT/dx = -u_y + dT_load/dx sgn w      dT/dy = u_x + dT_load/dy sgn w      dT/dz = dT_load/dz sgn w      dT/dw = T_visc'
+//! ```
+//!
+//! n is the noise of the rows; where that is coloured, what white noise would have that has as much where it is slow.
+
+use crate::fit::{Fit, Problem};
+use crate::record::{COLOURED, colour, rough};
+use crate::simulate::{Viscous, load_nm};
+
+/// Parts of the log, in one of which no vibration hides the noise of the specific force, and what that is at most at
+/// these rates [m/s^2]: 90 ug/sqrt(Hz) up to 500 Hz.
+const PARTS: usize = 20;
+const ACCEL_NOISE_MPS2: f64 = 0.02;
+/// The same of coloured noise, where it is slow.
+const SLOW_NOISE_MPS2: f64 = 0.05;
+/// Amplitude that coloured noise may have where it is slow, over its rows' and its colour: an AR(1) process of 0.5 has 0.6, one
+/// of 0.9 has 2, flicker at 1 Hz has 4.
+const SLOWER: f64 = 2.0;
+/// Rows of which one is looked at.
+const EVERY: usize = 7;
+/// Steps of the differences [m/s2], and over the slip rate.
+const STEP_MPS2: f64 = 0.05;
+const STEP: f64 = 0.1;
+
+/// Of one row, at some rows.
+pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64 {
+    let (inputs, rate_noise) = (&problem.record.inputs, &problem.record.rate_noise);
+    let (bearing, unbalance) = (&fit.physics.config.bearing, &fit.physics.config.unbalance);
+    let noise_mps2 = inputs.accel_mps2.each_ref().map(|axis| quietest(axis));
+    let noise_radps = slow(rate_noise.rms_radps, rate_noise.colour);
+    let slip_radps = inputs.slip_radps(&fit.prediction);
+    let viscous = Viscous::new(bearing);
+    let step_radps = STEP * bearing.slip_rate_radps;
+    let fixed = [-unbalance.y_kg_m, unbalance.x_kg_m, 0.0];
+    let square = |k: usize| -> f64 {
+        let accel = [0, 1, 2].map(|axis| inputs.accel_mps2[axis][k]);
+        let by = |axis: usize| {
+            let mut moved = accel;
+            moved[axis] += STEP_MPS2;
+            let load = (load_nm(bearing, moved) - load_nm(bearing, accel)) / STEP_MPS2;
+            noise_mps2[axis] * (fixed[axis] + load * slip_radps[k].signum())
+        };
+        let speed = slip_radps[k].abs();
+        let drag = (viscous.torque_nm(speed + step_radps) - viscous.torque_nm(speed)) / step_radps;
+        [by(0), by(1), by(2), noise_radps * drag].iter().map(|torque| torque * torque).sum()
+    };
+    let rows: Vec<f64> = (0..at.len()).step_by(EVERY).filter(|&k| at[k]).map(square).collect();
+    (rows.iter().sum::<f64>() / rows.len().max(1) as f64).sqrt()
+}
+
+/// Noise of the specific force along an axis [m/s2] where it is quietest: elsewhere vibration is like noise.
+fn quietest(values: &[f64]) -> f64 {
+    let part = values.len().div_ceil(PARTS).max(1);
+    let noise = values.chunks(part).map(|part| rough(part, &vec![true; part.len()])).fold(ACCEL_NOISE_MPS2, f64::min);
+    slow(noise, colour(values)).min(SLOW_NOISE_MPS2)
+}
+
+/// White noise that has as much where it is slow.
+fn slow(noise: f64, colour: f64) -> f64 {
+    noise * if colour > COLOURED { SLOWER * colour } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quietest;
+
+    #[test]
+    fn vibration_of_most_of_a_log_is_no_noise() {
+        let noise = |k: u32| f64::from(k.wrapping_mul(2_654_435_769) >> 16) / 65_536.0 - 0.5;
+        let vibration = |k: u32| if k < 18_000 { (0.9 * f64::from(k)).sin() } else { 0.0 };
+        let values: Vec<f64> = (0..20_000).map(|k| 0.01 * noise(k) + vibration(k)).collect();
+        assert!(quietest(&values) < 0.01, "{}", quietest(&values));
+    }
+}
