@@ -22,13 +22,10 @@ const LEAST_SHARE: f64 = 0.125;
 const SLOW: f64 = 0.5;
 /// Fewest rows.
 const LEAST_ROWS: usize = 60;
-/// Share from which on the loop sees the steps: of angles that lie on them, and of those to which noise is added behind, some of
-/// which go back to a wrong one; and standard errors by which it must be away from that, or from none.
-const SEEN: f64 = 0.6;
-const SEEN_BEHIND_NOISE: f64 = 0.1;
+/// Share from which on the loop sees the steps, as what is added behind them goes back to a wrong one; and standard errors by
+/// which it must be away from that, or from none.
+const SEEN: f64 = 0.1;
 const SURE: f64 = 4.0;
-/// How far angles may be from the steps that they lie on, over the step.
-const ON_STEPS: f64 = 0.02;
 
 /// Whether the loop sees steps of this size; none where this log does not tell.
 pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<bool> {
@@ -63,11 +60,8 @@ pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<b
     let share = with / square;
     let rest: f64 = slow.iter().map(|&k| (torques[k] - share * answers[k]).powi(2)).sum();
     let error = (rest / slow.len() as f64 / square).sqrt();
-    let off: f64 = slow.iter().map(|&k| (theta.values[k] - on_grid[k]).powi(2)).sum();
-    let lies_on_steps = (off / slow.len() as f64).sqrt() < ON_STEPS * step_rad;
-    let least = if lies_on_steps { SEEN } else { SEEN_BEHIND_NOISE };
-    let seen = share > least && share > SURE * error;
-    (seen || share + SURE * error < least).then_some(seen)
+    let seen = share > SEEN && share > SURE * error;
+    (seen || share + SURE * error < SEEN).then_some(seen)
 }
 
 /// A series through a filter.
