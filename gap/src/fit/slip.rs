@@ -14,8 +14,7 @@
 //!
 //! What the logged rate does from row to row says how large s may be: some of that is motion. A residual r says how
 //! large it is: `-2 ln L = |x|^2 + sum ln(1 + |a'|^2)`, x what comes out of r. Of the sizes that are as likely as the
-//! likeliest one, the largest is taken. Where the rate's noise is coloured it may be larger than what rows say, if a residual
-//! speaks for that.
+//! likeliest one, the largest is taken.
 
 use rayon::prelude::*;
 
@@ -25,7 +24,7 @@ use super::release::Released;
 use super::signals::{Kept, Signals, difference, scaled};
 use super::turning::{SLOWLY, at_once, mostly};
 use super::vectors::take_along;
-use crate::record::{COLOURED, RateNoise, Record};
+use crate::record::{RateNoise, Record};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
 
 /// Most blocks.
@@ -46,8 +45,6 @@ const LEAST: f64 = 1e-3;
 /// Sizes of the noise that are tried: each is this share of the one before.
 const SMALLER: f64 = 0.6;
 const SIZES: usize = 12;
-/// And of coloured noise, of which rows say less, each one over this share of the one before.
-const LARGER: usize = 7;
 /// Twice the logarithm by which likelihoods differ that are alike.
 const ALIKE: f64 = 4.0;
 
@@ -121,34 +118,19 @@ impl Slips {
                 *value *= sigma;
             }
         }
-        let tried = |sizes: &mut dyn Iterator<Item = f64>| {
-            let mut tried: Vec<(f64, Self)> = Vec::new();
-            let mut least = f64::MAX;
-            for size in sizes {
-                // the longer ones last: what is narrow stays so
-                let slips = none.clone().with(&shown, size).with(&released, 1.0);
-                let unlikely = slips.unlikely(&residual);
-                least = least.min(unlikely);
-                tried.push((unlikely, slips));
-                if unlikely > least + 2.0 * ALIKE {
-                    break;
-                }
-            }
-            (least, tried)
-        };
-        let (least, all) = tried(&mut std::iter::successors(Some(1.0), |size| Some(SMALLER * size)).take(SIZES));
-        if record.rate_noise.colour > COLOURED {
-            let larger = std::iter::successors(Some(1.0 / SMALLER), |size| Some(size / SMALLER));
-            let (likely, larger) = tried(&mut larger.take(LARGER));
-            if likely < least - 2.0 * ALIKE {
-                return larger
-                    .into_iter()
-                    .find(|(unlikely, _)| *unlikely <= likely)
-                    .map(|(_, slips)| slips)
-                    .unwrap_or_default();
+        let mut tried: Vec<(f64, Self)> = Vec::new();
+        let mut least = f64::MAX;
+        for size in std::iter::successors(Some(1.0), |size| Some(SMALLER * size)).take(SIZES) {
+            // the longer ones last: what is narrow stays so
+            let slips = none.clone().with(&shown, size).with(&released, 1.0);
+            let unlikely = slips.unlikely(&residual);
+            least = least.min(unlikely);
+            tried.push((unlikely, slips));
+            if unlikely > least + 2.0 * ALIKE {
+                break;
             }
         }
-        let alike = all.into_iter().find(|(unlikely, _)| *unlikely <= least + ALIKE);
+        let alike = tried.into_iter().find(|(unlikely, _)| *unlikely <= least + ALIKE);
         alike.map(|(_, slips)| slips).unwrap_or_default()
     }
 

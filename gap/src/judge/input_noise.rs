@@ -1,11 +1,12 @@
 //! What noise of the logged inputs is to the gimbal, away from where the bearing turns around [N m]:
 //!
 //! ```text
-//! s^2 = mean of sum over x, y, z (n_a dT/da)^2 + (n_w dT/dw)^2
+//! s^2 = |u|^2 n^2 + mean of sum over coloured ones (m_a dT/da)^2 + (m_w dT/dw)^2
 //! dT/dx = -u_y + dT_load/dx sgn w      dT/dy = u_x + dT_load/dy sgn w      dT/dz = dT_load/dz sgn w      dT/dw = T_visc'
 //! ```
 //!
-//! n is the noise of the rows; where that is coloured, what white noise would have that has as much where it is slow.
+//! n is what the specific force has from row to row, m what white noise would have that has as much where it is slow as the
+//! noise of an axis or of the rate that is not white.
 
 use crate::fit::{Fit, Problem};
 use crate::record::{COLOURED, colour, rough};
@@ -30,8 +31,10 @@ const STEP: f64 = 0.1;
 pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64 {
     let (inputs, rate_noise) = (&problem.record.inputs, &problem.record.rate_noise);
     let (bearing, unbalance) = (&fit.physics.config.bearing, &fit.physics.config.unbalance);
-    let noise_mps2 = inputs.accel_mps2.each_ref().map(|axis| quietest(axis));
-    let noise_radps = slow(rate_noise.rms_radps, rate_noise.colour);
+    let white = inputs.accel_mps2.each_ref().map(|axis| quietest(axis));
+    let white_nm = unbalance.x_kg_m.hypot(unbalance.y_kg_m) * white.into_iter().fold(0.0, f64::max);
+    let slow_mps2 = [0, 1, 2].map(|axis| slow(white[axis], colour(&inputs.accel_mps2[axis])).min(SLOW_NOISE_MPS2));
+    let slow_radps = slow(rate_noise.rms_radps, rate_noise.colour);
     let slip_radps = inputs.slip_radps(&fit.prediction);
     let viscous = Viscous::new(bearing);
     let step_radps = STEP * bearing.slip_rate_radps;
@@ -42,26 +45,28 @@ pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64
             let mut moved = accel;
             moved[axis] += STEP_MPS2;
             let load = (load_nm(bearing, moved) - load_nm(bearing, accel)) / STEP_MPS2;
-            noise_mps2[axis] * (fixed[axis] + load * slip_radps[k].signum())
+            slow_mps2[axis] * (fixed[axis] + load * slip_radps[k].signum())
         };
         let speed = slip_radps[k].abs();
-        let drag = (viscous.torque_nm(speed + step_radps) - viscous.torque_nm(speed)) / step_radps;
-        [by(0), by(1), by(2), noise_radps * drag].iter().map(|torque| torque * torque).sum()
+        // at the break it jumps, and a small error of the rate hardly ever gets there
+        let breaks = (speed..speed + step_radps).contains(&viscous.break_radps());
+        let rise_nm = viscous.torque_nm(speed + step_radps) - viscous.torque_nm(speed);
+        let drag = if breaks { 0.0 } else { rise_nm / step_radps };
+        [by(0), by(1), by(2), slow_radps * drag].iter().map(|torque| torque * torque).sum()
     };
     let rows: Vec<f64> = (0..at.len()).step_by(EVERY).filter(|&k| at[k]).map(square).collect();
-    (rows.iter().sum::<f64>() / rows.len().max(1) as f64).sqrt()
+    (white_nm * white_nm + rows.iter().sum::<f64>() / rows.len().max(1) as f64).sqrt()
 }
 
 /// Noise of the specific force along an axis [m/s2] where it is quietest: elsewhere vibration is like noise.
 fn quietest(values: &[f64]) -> f64 {
     let part = values.len().div_ceil(PARTS).max(1);
-    let noise = values.chunks(part).map(|part| rough(part, &vec![true; part.len()])).fold(ACCEL_NOISE_MPS2, f64::min);
-    slow(noise, colour(values)).min(SLOW_NOISE_MPS2)
+    values.chunks(part).map(|part| rough(part, &vec![true; part.len()])).fold(ACCEL_NOISE_MPS2, f64::min)
 }
 
-/// White noise that has as much where it is slow.
+/// White noise that has as much where it is slow as coloured noise.
 fn slow(noise: f64, colour: f64) -> f64 {
-    noise * if colour > COLOURED { SLOWER * colour } else { 1.0 }
+    if colour > COLOURED { noise * SLOWER * colour } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -13,11 +13,13 @@ pub(crate) const COLOURED: f64 = 1.5;
 /// Rows of a part, and the share of the parts that are looked at.
 const PART: usize = 1024;
 const QUIETEST: usize = 5;
+/// Power that the middle part may have over that of the quietest: noise goes on as it is, and motion does not.
+const AS_IT_WAS: f64 = 1.6;
 /// Slow and fast, over half the sampling rate.
 const SLOW: [f64; 2] = [0.12, 0.24];
 const FAST: [f64; 2] = [0.6, 1.0];
 
-/// Colour of the noise of a signal; 1 where there is none, or too little of it.
+/// Colour of the noise of a signal; 1 where there is none, or motion hides it.
 pub(crate) fn colour(values: &[f64]) -> f64 {
     let window = hann(PART);
     let powers = values.chunks_exact(PART).filter_map(|part| {
@@ -28,9 +30,10 @@ pub(crate) fn colour(values: &[f64]) -> f64 {
     });
     let mut powers: Vec<[f64; 2]> = powers.collect();
     powers.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let middle = powers.get(powers.len() / 2).map_or(0.0, |power| power[0]);
     powers.truncate(powers.len().div_ceil(QUIETEST));
-    let [slow, fast] = [0, 1].map(|band| powers.iter().map(|power| power[band]).sum::<f64>());
-    if fast > 0.0 { slow / fast } else { 1.0 }
+    let [slow, fast] = [0, 1].map(|band| powers.iter().map(|power| power[band]).sum::<f64>() / powers.len() as f64);
+    if fast > 0.0 && middle < AS_IT_WAS * slow { slow / fast } else { 1.0 }
 }
 
 /// Mean power in a band.
@@ -64,5 +67,8 @@ mod tests {
         let half = colour(&noise(0.5));
         assert!((half - 4.4).abs() < 1.0, "{half}");
         assert!(half > COLOURED && colour(&vec![0.0; 5000]) < COLOURED);
+        let comes_and_goes = |(k, value): (usize, f64)| if k % 10_000 < 3000 { 0.1 * value } else { value };
+        let motion: Vec<f64> = noise(0.5).into_iter().enumerate().map(comes_and_goes).collect();
+        assert!(colour(&motion) < COLOURED);
     }
 }
