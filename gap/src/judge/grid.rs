@@ -17,7 +17,7 @@ const WRITTEN: f64 = 1e-4;
 const SHOWN: f64 = 6.0;
 const LEAST_COUNT: f64 = 1.3;
 /// A step that divides a power of ten by one of two, as converters of so many bits do over a full scale of 1, 2 or 5 units, is
-/// the log's up to so many noises; and any below this, as no pick-off in the loop is so coarse for so little [rad].
+/// the log's up to so many noises; and any step below this, where the realistic ones of a pick-off begin [rad].
 const CONVERTED: f64 = 5.0;
 const FINEST_RAD: f64 = 1e-6;
 const BITS: std::ops::RangeInclusive<i32> = 10..=20;

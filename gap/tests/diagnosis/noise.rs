@@ -62,3 +62,16 @@ fn noise_of_a_sensor_behind_a_filter_is_noise() {
     let diagnosis = diagnose(&log, &ModelFile::default());
     assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:#}", report(&diagnosis)["notes"]);
 }
+
+/// A pick-off that steps does so in the loop, and the motor answers.
+#[test]
+fn steps_of_a_converter_behind_the_loop_are_no_quantised_pickoff() {
+    let step_rad = 8.642e-6;
+    let mut log = log_with(Excitation::Manoeuvre, &[]);
+    let theta_rad = log.column(Column::GyroAngle).expect("the pick-off").to_vec();
+    log.set(Column::GyroAngle, theta_rad.iter().map(|angle| (angle / step_rad).round() * step_rad).collect());
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:?}", names(&diagnosis));
+    let in_the_loop = log_with(Excitation::Manoeuvre, &[("pickoff_quantisation", vec![step_rad])]);
+    assert_eq!(names(&diagnose(&in_the_loop, &ModelFile::default())), ["pickoff_quantisation"]);
+}
