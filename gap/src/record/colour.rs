@@ -9,7 +9,7 @@
 use crate::window::{hann, spectrum};
 
 /// Colour from which on noise is not white.
-pub(crate) const COLOURED: f64 = 1.5;
+pub(crate) const COLOURED: f64 = 1.3;
 /// Rows of a part, and the share of the parts that are looked at.
 const PART: usize = 1024;
 const QUIETEST: usize = 5;
