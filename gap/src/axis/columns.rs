@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use gimbal_model_file::AxisModel;
 
-use super::follows::{first_order, follows, lateness_error};
+use super::follows::{SURE, first_order, follows, lateness_error};
 use super::judge::BEYOND;
 use super::library::rms;
 use super::motion::{Motion, MotionFrom, NARROW};
@@ -66,8 +66,6 @@ const EXACT: f64 = 1e-5;
 const UNRELATED: f64 = 0.7;
 /// Rows by which the rate may be late: half a row belongs to any difference of two.
 const LATE: f64 = 0.8;
-/// Standard errors by which it must be more than that.
-const SURE: f64 = 3.0;
 /// Least smoothing [rows].
 const LEAST_SIGMA: f64 = 3.0;
 

@@ -7,8 +7,8 @@ const SHIFT: i32 = 12;
 const FAR: i32 = 60;
 /// Two signals are of one scale within this.
 const SAME: f64 = 0.02;
-/// Standard errors by which scales must differ more than that.
-const SURE: f64 = 3.0;
+/// Standard errors by which scales must differ more than that, and a rate be late.
+pub(super) const SURE: f64 = 3.0;
 /// Share of what a delay leaves that a filter may.
 const CLEARLY: f64 = 0.25;
 /// Parts of the log that tell the error of a lateness and of a scale.

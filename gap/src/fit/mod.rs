@@ -38,6 +38,7 @@ pub(crate) use hypothesis::{Hypothesis, Outcome, Point};
 pub(crate) use linear::Linear;
 pub use normal::Solution;
 pub(crate) use normal::{drive, gram, narrow, of_any_scale, slices, solve};
+pub(crate) use plans::Plans;
 pub use problem::{BLOCKS, Columns, Problem};
 pub use refine::{Effort, Fit, refine};
 pub(crate) use refine::{is_idle, linearised, stand, standard_errors};

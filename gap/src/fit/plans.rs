@@ -8,7 +8,7 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
 /// The transforms there and back.
 #[derive(Clone)]
-pub(super) struct Plans {
+pub(crate) struct Plans {
     length: usize,
     forward: Arc<dyn RealToComplex<f64>>,
     back: Arc<dyn ComplexToReal<f64>>,
@@ -22,7 +22,7 @@ impl fmt::Debug for Plans {
 
 impl Plans {
     /// Of at least so many rows: a power of two, or three, five, nine or fifteen times one.
-    pub(super) fn new(least: usize) -> Self {
+    pub(crate) fn new(least: usize) -> Self {
         let mut length = least.next_power_of_two();
         for odd in [3, 5, 9, 15] {
             let other = odd * (least.div_ceil(odd)).next_power_of_two();
@@ -33,12 +33,12 @@ impl Plans {
     }
 
     /// Rows of a transform.
-    pub(super) fn length(&self) -> usize {
+    pub(crate) fn length(&self) -> usize {
         self.length
     }
 
     /// The lines of values, with zeros up to the length.
-    pub(super) fn lines(&self, values: impl Iterator<Item = f64>) -> Vec<Complex<f64>> {
+    pub(crate) fn lines(&self, values: impl Iterator<Item = f64>) -> Vec<Complex<f64>> {
         let mut padded = Vec::with_capacity(self.length);
         padded.extend(values);
         padded.resize(self.length, 0.0);
@@ -49,7 +49,7 @@ impl Plans {
     }
 
     /// The values whose lines these are, times their number.
-    pub(super) fn series(&self, lines: &mut [Complex<f64>]) -> Vec<f64> {
+    pub(crate) fn series(&self, lines: &mut [Complex<f64>]) -> Vec<f64> {
         lines[0].im = 0.0;
         if let Some(last) = lines.last_mut() {
             last.im = 0.0;

@@ -8,11 +8,10 @@
 //! beyond `LEAST_HZ`, where the loop is open, and at rows about which theta moves less than half a step: elsewhere the loop saw
 //! what is between the rows. A share of one is a pick-off that steps, one of zero a converter behind it.
 
-use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
 use super::grid::on_grid;
-use crate::fit::{Fit, Problem, servo_answer};
+use crate::fit::{Fit, Plans, Problem, servo_answer};
 use crate::record::Signal;
 
 /// Where the loop is open [Hz], and the share of the sampling rate from which on what is left is looked at.
@@ -47,14 +46,16 @@ pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<b
         (0..rows).map(|k| left(torque.valid[k], torque.values[k] - fit.prediction.motor_torque_nm[k])).collect();
     let least_hz = LEAST_HZ.max(LEAST_SHARE / period_s);
     let fast = |hz: f64| Complex::from(if hz < least_hz { 0.0 } else { 1.0 });
-    let errors = filtered(&errors, period_s, fast)?;
-    let torques = filtered(&torques, period_s, fast)?;
+    // twice the length, so that nothing comes round
+    let plans = Plans::new(2 * rows);
+    let errors = filtered(&errors, &plans, period_s, fast);
+    let torques = filtered(&torques, &plans, period_s, fast);
     let mut about = vec![0.0; rows];
     for &k in &slow {
         about[k] = errors[k];
     }
     let answer = |hz: f64| fast(hz) * servo_answer(&fit.physics.config.servo, hz.max(least_hz), period_s);
-    let answers = filtered(&about, period_s, answer)?;
+    let answers = filtered(&about, &plans, period_s, answer);
     let with: f64 = slow.iter().map(|&k| answers[k] * torques[k]).sum();
     let square: f64 = slow.iter().map(|&k| answers[k] * answers[k]).sum();
     let share = with / square;
@@ -65,21 +66,11 @@ pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<b
 }
 
 /// A series through a filter.
-fn filtered(series: &[f64], period_s: f64, filter: impl Fn(f64) -> Complex<f64>) -> Option<Vec<f64>> {
-    let length = (2 * series.len()).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (there, back) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
-    let mut padded = there.make_input_vec();
-    padded[..series.len()].copy_from_slice(series);
-    let mut lines = there.make_output_vec();
-    there.process(&mut padded, &mut lines).ok()?;
-    let step_hz = 1.0 / (length as f64 * period_s);
+fn filtered(series: &[f64], plans: &Plans, period_s: f64, filter: impl Fn(f64) -> Complex<f64>) -> Vec<f64> {
+    let length = plans.length() as f64;
+    let mut lines = plans.lines(series.iter().copied());
     for (line, value) in lines.iter_mut().enumerate() {
-        *value *= filter(line as f64 * step_hz) / length as f64;
+        *value *= filter(line as f64 / (length * period_s)) / length;
     }
-    let last = lines.len() - 1;
-    (lines[0].im, lines[last].im) = (0.0, 0.0);
-    back.process(&mut lines, &mut padded).ok()?;
-    padded.truncate(series.len());
-    Some(padded)
+    plans.series(&mut lines)
 }

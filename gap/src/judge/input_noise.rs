@@ -19,7 +19,7 @@ const ACCEL_NOISE_MPS2: f64 = 0.02;
 /// The same of coloured noise, where it is slow.
 const SLOW_NOISE_MPS2: f64 = 0.05;
 /// Amplitude that coloured noise may have where it is slow, over its rows' and its colour: an AR(1) process of 0.5 has 0.6, one
-/// of 0.9 has 2, flicker at 1 Hz has 4.
+/// of 0.9 has 1.5, flicker at 1 Hz has 4.
 const SLOWER: f64 = 2.0;
 /// Rows of which one is looked at.
 const EVERY: usize = 7;
@@ -41,10 +41,11 @@ pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64
     let fixed = [-unbalance.y_kg_m, unbalance.x_kg_m, 0.0];
     let square = |k: usize| -> f64 {
         let accel = [0, 1, 2].map(|axis| inputs.accel_mps2[axis][k]);
+        let still_nm = load_nm(bearing, accel);
         let by = |axis: usize| {
             let mut moved = accel;
             moved[axis] += STEP_MPS2;
-            let load = (load_nm(bearing, moved) - load_nm(bearing, accel)) / STEP_MPS2;
+            let load = (load_nm(bearing, moved) - still_nm) / STEP_MPS2;
             slow_mps2[axis] * (fixed[axis] + load * slip_radps[k].signum())
         };
         let speed = slip_radps[k].abs();

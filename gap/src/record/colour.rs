@@ -4,7 +4,7 @@
 //! colour = mean of P(f), f from 12 to 24 % of half the sampling rate / mean of P(f), f from 60 % on
 //! ```
 //!
-//! in the quietest parts of a signal. White noise has 1, an AR(1) process of 0.5 a colour of 4.7, of 0.9 one of 9, flicker 2.
+//! in the quietest parts of a signal. White noise has 1, an AR(1) process of 0.5 a colour of 4.9, of 0.9 one of 12, flicker 2.
 
 use crate::window::{hann, spectrum};
 
