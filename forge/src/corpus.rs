@@ -1,7 +1,10 @@
 //! A corpus of logs: which kinds in which shares, and one log after the other from a seed.
 
 mod case;
+mod chosen;
 mod drift;
+mod logged;
+mod setting;
 mod sizing;
 mod text;
 

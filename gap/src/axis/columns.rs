@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use gimbal_model_file::AxisModel;
 
+use super::channels::{drive, limit, references, stuck};
 use super::follows::{SURE, first_order, follows, lateness_error};
 use super::judge::BEYOND;
 use super::library::rms;
@@ -60,8 +61,6 @@ impl Checked {
 /// How much nearer to the model another time must bring its parameters than another position or rate (a logarithm), where
 /// it is not the only one that brings them inside of their tolerances.
 const OTHER_TIME: f64 = 0.1;
-/// Share of a column that roundings of two formulas leave.
-const EXACT: f64 = 1e-5;
 /// Correlation below which two columns have nothing to do with each other.
 const UNRELATED: f64 = 0.7;
 /// Rows by which the rate may be late: half a row belongs to any difference of two.
@@ -174,7 +173,10 @@ pub(super) fn check(log: &AxisLog, model: &AxisModel) -> Checked {
         });
         checked.unit = Some(other.unit);
     }
-    others(log, model, &mut checked);
+    checked.words.extend(drive(log, model));
+    checked.words.extend(limit(log, model));
+    checked.words.extend(stuck(log, model));
+    checked.words.extend(references(log, model));
     checked
 }
 
@@ -249,8 +251,11 @@ fn sign(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
     let motion = Motion::new(log, model, from, 1.0, NARROW);
     if motion.stands {
         checked.words.push(format!(
-            "the axis stands {:.0} % of the time: the balance is one of rest, without inertia or viscous friction",
-            100.0 * motion.at_rest
+            "the axis stands {:.0} % of the time, or moves no faster than its rate is told from noise ({:.2e} {}/s): the \
+             balance is one of rest, without inertia or viscous friction",
+            100.0 * motion.at_rest,
+            motion.quiet,
+            model.motion.unit()
         ));
         return;
     }
@@ -277,69 +282,4 @@ fn sign(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
         "plain regression: inertia {:.4e}, viscous {:.4e}, Coulomb {:.4e}, constant {:.3e} (model: {:.4e}, {:.4e}, {:.4e}, 0)",
         found[0], found[1], found[2], found[3], model.inertia, model.viscous, model.coulomb
     ));
-}
-
-/// Command, limits, stuck channels, references.
-fn others(log: &AxisLog, model: &AxisModel, checked: &mut Checked) {
-    let names = &model.columns;
-    let effort_name = &names.effort.name;
-    if let (Some(command), Some(source)) = (&log.command, &names.command) {
-        let both = follows(command, &log.effort, &log.valid);
-        checked.words.push(format!(
-            "`{effort_name}` is {:.5} times `{}` (correlation {:.5}, {:.2} ms late)",
-            both.slope,
-            source.name,
-            both.correlation,
-            both.late_rows * 1e3 * log.period_s
-        ));
-        let left = rms(&log.effort) * (1.0 - both.correlation.powi(2)).max(0.0).sqrt();
-        if left < step(&log.effort).max(EXACT * rms(&log.effort)) {
-            checked.words.push(format!(
-                "`{effort_name}` is the command times a constant, not a measurement: the drive is not seen"
-            ));
-        }
-    }
-    let most = log.effort.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
-    let limit = model.effort_limit.unwrap_or(most).min(most);
-    let at_limit = log.effort.windows(2).filter(|p| p[0].abs() >= 0.999 * limit && p[1].abs() >= 0.999 * limit).count();
-    if at_limit as f64 > 2e-3 * log.effort.len() as f64 {
-        checked.words.push(format!(
-            "`{effort_name}` stays at {limit:.4} {} for {:.1} % of the rows: a limit",
-            model.effort_unit,
-            100.0 * at_limit as f64 / log.effort.len() as f64
-        ));
-    }
-    let motion = [(&log.position, &names.position), (&log.velocity, &names.velocity)];
-    let effort = Some(log.effort.clone());
-    let source = Some(names.effort.clone());
-    for (values, source) in motion.into_iter().chain([(&effort, &source)]) {
-        let (Some(values), Some(source)) = (values, source) else { continue };
-        let mut longest = 0;
-        let mut run = 0;
-        for pair in values.windows(2) {
-            run = if pair[0].to_bits() == pair[1].to_bits() { run + 1 } else { 0 };
-            longest = longest.max(run);
-        }
-        let length_s = f64::from(longest) * log.period_s;
-        if length_s > 0.2 {
-            checked.words.push(format!("`{}` does not change for {length_s:.2} s: at rest, or stuck", source.name));
-        }
-    }
-    let rate = match (&log.velocity, &log.position) {
-        (Some(velocity), _) => Some(velocity.clone()),
-        (None, Some(position)) => Some(Kernel::new(3.0, 1, log.period_s).apply(position)),
-        _ => None,
-    };
-    for (reference, measured, source) in [
-        (&log.position_reference, &log.position, &names.position_reference),
-        (&log.velocity_reference, &rate, &names.velocity_reference),
-    ] {
-        if let (Some(reference), Some(measured), Some(source)) = (reference, measured, source) {
-            let both = follows(reference, measured, &log.valid);
-            checked.words.push(format!(
-                "the axis follows `{}` with a gain of {:.4} (correlation {:.3})",
-                source.name, both.slope, both.correlation
-            ));
-        }
-    }
 }

@@ -119,8 +119,12 @@ pub(super) fn law_of(log: &AxisLog, checked: &Checked, model: &AxisModel, motion
 #[allow(clippy::too_many_lines, reason = "one chain from the law to its words")]
 fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     let Some(controller) = &model.controller else { return Law::default() };
+    let not_held = |why: &str| Law {
+        words: vec![format!("the control law is not held against this log: {why}")],
+        ..Law::default()
+    };
     if motion.stands {
-        return Law::default();
+        return not_held("the axis stands");
     }
     let columns = &model.columns;
     let lost = columns.position_reference.is_some() && log.position_reference.is_none()
@@ -128,17 +132,15 @@ fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
     let (output, unit) = match (controller.output, &log.command, &model.columns.command) {
         (Output::Command, Some(command), Some(source)) => (command, source.unit.clone()),
         (Output::Effort, ..) => (&log.effort, model.effort_unit.clone()),
-        _ => return Law::default(),
+        _ => return not_held("its output, the command, is not in this file"),
     };
     let mut m = motion.clone();
     free_rows(&mut m, output, model, controller);
     if m.rows.len() < LEAST_ROWS {
-        return Law::default();
+        return not_held(&format!("{} rows of slip below the limit, and {LEAST_ROWS} are needed", m.rows.len()));
     }
     let Some(errors) = errors(log, controller, &m).filter(|_| !lost) else {
-        let words =
-            vec!["the control law is known, but not what it follows: its reference is not in this file".to_owned()];
-        return Law { words, ..Law::default() };
+        return not_held("what it follows, its reference, is not in this file");
     };
     let given = m.raw(output);
     let rows = given.len();

@@ -4,6 +4,7 @@
 
 mod balance;
 mod beat;
+mod channels;
 mod columns;
 mod diagnose;
 mod experiment;
@@ -29,6 +30,7 @@ mod tried;
 mod units;
 mod unseen;
 mod waves;
+mod zero;
 
 pub use columns::ColumnFault;
 pub use diagnose::{AxisDiagnosis, diagnose};

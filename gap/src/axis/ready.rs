@@ -8,6 +8,7 @@ use super::library::rms;
 use super::motion::{Motion, MotionFrom, NARROW, WIDE};
 use super::plain::nominal_rest;
 use super::table::AxisLog;
+use super::zero::take_zero_off;
 
 /// Share of the effort from which on a gap is large.
 const LARGE_GAP: f64 = 0.3;
@@ -15,6 +16,7 @@ const LARGE_GAP: f64 = 0.3;
 /// A log made ready: columns checked, the motion chosen.
 pub(super) fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::Checked, Motion) {
     columns::unwrap(&mut log);
+    take_zero_off(&mut log);
     let checked = columns::check(&log, model);
     if let Some(unit) = checked.unit {
         unit.undo(&mut log);
