@@ -63,7 +63,7 @@ impl Balance {
             return (balance, set);
         }
         let beside = rounded(motion, &found);
-        let as_round = beside.0.full_at.to_bits() == balance.motion.full_at.to_bits();
+        let as_round = beside.0.corner == balance.motion.corner;
         if as_round && beside.1.share_of_effects(&beside.0) < MUCH_NEEDED {
             return (balance, set);
         }

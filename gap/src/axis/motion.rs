@@ -37,6 +37,25 @@ pub enum MotionFrom {
     Velocity,
 }
 
+/// How friction comes up to its level about zero rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Corner {
+    /// Along a line that ends at a rate.
+    Line(f64),
+    /// `tanh(v / rate)`.
+    Smooth(f64),
+}
+
+impl Corner {
+    /// Share of the level, with the sign of the rate.
+    pub(super) fn share(self, rate: f64) -> f64 {
+        match self {
+            Self::Line(full_at) => (rate / full_at).clamp(-1.0, 1.0),
+            Self::Smooth(own) => (rate / own).tanh(),
+        }
+    }
+}
+
 /// Motion at every row, and the grid of the balance.
 #[derive(Debug, Clone)]
 pub(super) struct Motion {
@@ -69,9 +88,9 @@ pub(super) struct Motion {
     pub(super) block: Vec<usize>,
     /// Rows of the log from one row of the grid to the next.
     pub(super) thin: usize,
-    /// Rate below which the direction is not known, and the rate at which friction has come up to its level.
+    /// Rate below which the direction is not known, and how friction comes up to its level.
     pub(super) quiet: f64,
-    pub(super) full_at: f64,
+    pub(super) corner: Corner,
     /// Largest rate, and the span of positions.
     pub(super) fastest: f64,
     pub(super) travel: f64,
@@ -171,7 +190,7 @@ impl Motion {
         let s = if stands {
             super::memory::play_state(&q, (8.0 * position_noise).max(2e-3 * (high - low)))
         } else {
-            v.iter().map(|v| (v / quiet).clamp(-1.0, 1.0)).collect()
+            v.iter().map(|v| Corner::Line(quiet).share(*v)).collect()
         };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small factor")]
         let thin = ((rate_hz / (4.0 * band_hz)).floor() as usize).max(v.len() / MOST_ROWS).max(1);
@@ -210,7 +229,7 @@ impl Motion {
             block,
             thin,
             quiet,
-            full_at: quiet,
+            corner: Corner::Line(quiet),
             fastest,
             travel: high - low,
             position_noise,
@@ -223,11 +242,11 @@ impl Motion {
         }
     }
 
-    /// The same with friction that comes up to its level at such a rate.
-    pub(super) fn with_full_friction_at(mut self, rate: f64) -> Self {
+    /// The same with friction that comes up to its level along such a corner.
+    pub(super) fn with_corner(mut self, corner: Corner) -> Self {
         if !self.stands {
-            self.full_at = rate;
-            self.s = self.v.iter().map(|v| (v / rate).clamp(-1.0, 1.0)).collect();
+            self.corner = corner;
+            self.s = self.v.iter().map(|v| corner.share(*v)).collect();
         }
         self
     }

@@ -3,7 +3,7 @@
 use gimbal_model_file::AxisModel;
 
 use super::library::{NOMINAL, Shape, rms};
-use super::motion::Motion;
+use super::motion::{Corner, Motion};
 use super::regress::Grams;
 
 /// Rate up to which friction may come up to its level, over the fastest; steps of it; and what a rounder corner must leave at
@@ -83,27 +83,29 @@ fn fitted(motion: &Motion, beside: &[Shape], effort: &[f64]) -> (Needs, f64) {
     (Needs { parameters: [fit[0], fit[1], fit[2], fit[3]], effects }, rest)
 }
 
-/// The motion with the friction that comes up to its level at the rate that explains most beside effects, and how plain
+/// The motion with the friction that comes up to its level along the corner that explains most beside effects, and how plain
 /// least squares explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than
 /// the least only where that leaves a good deal less.
 pub(super) fn rounded(mut motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
     let effort = motion.raw(&motion.effort);
     let (sharp, sharp_rest) = fitted(&motion, beside, &effort);
-    let (quiet, widest) = (motion.quiet, WIDEST_ROUNDING * motion.fastest);
     if motion.stands {
         return (motion, sharp, sharp_rest);
     }
-    let rates = std::iter::successors(Some(ROUNDER * quiet), |rate| Some(ROUNDER * rate));
-    let mut best = (quiet, sharp, ROUNDED * sharp_rest);
-    for rate in rates.take_while(|rate| *rate < widest) {
-        motion = motion.with_full_friction_at(rate);
+    let (as_it_was, widest) = (motion.corner, WIDEST_ROUNDING * motion.fastest);
+    let rates = std::iter::successors(Some(ROUNDER * motion.quiet), |rate| Some(ROUNDER * rate));
+    let corners =
+        rates.take_while(|rate| *rate < widest).flat_map(|rate| [Corner::Line(rate), Corner::Smooth(0.5 * rate)]);
+    let mut best = (as_it_was, sharp, ROUNDED * sharp_rest);
+    for corner in corners {
+        motion = motion.with_corner(corner);
         let (needs, rest) = fitted(&motion, beside, &effort);
         if rest < best.2 {
-            best = (rate, needs, rest);
+            best = (corner, needs, rest);
         }
     }
-    let (rate, needs, rest) = best;
-    (motion.with_full_friction_at(rate), needs, if rate > quiet { rest } else { sharp_rest })
+    let (corner, needs, rest) = best;
+    (motion.with_corner(corner), needs, if corner == as_it_was { sharp_rest } else { rest })
 }
 
 /// Root mean square of what the nominal model leaves.

@@ -6,6 +6,8 @@ use gimbal_model_file::AxisModel;
 use gimbal_model_file::axis::{Quantity, Source};
 use thiserror::Error;
 
+use super::library::rms;
+
 /// Why a log cannot be read.
 #[derive(Debug, Error)]
 pub enum AxisLogError {
@@ -74,6 +76,21 @@ const JITTER: f64 = 0.02;
 const GAP: f64 = 3.5;
 /// Fewer rows say nothing.
 const LEAST_ROWS: usize = 400;
+
+/// What hangs on a channel that changes by less of its mean is what hangs on nothing.
+const LEAST_CHANGE: f64 = 0.01;
+
+/// Standard deviation of what is finite, over the size of its mean.
+fn changes(values: &[f64]) -> f64 {
+    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    let mean = finite.iter().sum::<f64>() / finite.len().max(1) as f64;
+    let spread = rms(&finite.iter().map(|value| value - mean).collect::<Vec<_>>());
+    if finite.iter().all(|value| value.to_bits() == finite[0].to_bits()) {
+        0.0
+    } else {
+        spread / mean.abs().max(1e-300)
+    }
+}
 
 struct Wanted<'a> {
     source: &'a Source,
@@ -190,13 +207,13 @@ impl AxisLog {
             }
         }
         log.even(&time).map_err(content)?;
-        let constant =
-            |values: &[f64]| values.iter().filter(|v| v.is_finite()).all(|v| v.to_bits() == values[0].to_bits());
         log.auxiliary.retain(|(name, values)| {
-            if constant(values) {
-                log.notes.push(format!("{name} never changes in this file"));
+            let changes = changes(values);
+            if changes < LEAST_CHANGE {
+                let much = if changes == 0.0 { "never changes" } else { "changes by less than a hundredth of itself" };
+                log.notes.push(format!("{name} {much} in this file: nothing is told to hang on it"));
             }
-            !constant(values)
+            changes >= LEAST_CHANGE
         });
         Ok(log)
     }

@@ -21,7 +21,7 @@ pub(super) fn score(
     notes: &mut Vec<String>,
 ) -> Vec<Shrunk> {
     let (_, checked, motion) = ready(log, model);
-    let mut motion = motion.with_full_friction_at(balance.motion.full_at);
+    let mut motion = motion.with_corner(balance.motion.corner);
     if Some(balance.motion.from) != checked.from {
         notes.push(format!("{name}: its motion is taken from the other column"));
     }

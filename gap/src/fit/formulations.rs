@@ -13,7 +13,7 @@ const FORMULATIONS: usize = 2;
 /// The other formulations of an effect: what says so, and its second value over that of the first formulation where the two
 /// come nearest to each other (least squares over a loop's outer branch; half of the excess).
 const OTHERS: [(&str, &[(f64, f64)]); 2] =
-    [("cable_hysteresis", &[(1.0, 0.8)]), ("stribeck", &[(1.0, 1.2), (2.0, 0.83)])];
+    [("cable_hysteresis", &[(1.0, 0.8), (2.0, 0.9), (3.0, 1.15)]), ("stribeck", &[(1.0, 1.2), (2.0, 0.83)])];
 
 /// A fit with one candidate more.
 pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {

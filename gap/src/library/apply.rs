@@ -40,7 +40,12 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
         "cable_spring" => physics.spring_nm_per_rad += v(0),
         "cable_hysteresis" => {
             // a third value says how it is formulated
-            let formulation = if v(2) > 0.5 { Loop::Stops } else { Loop::BoucWen };
+            let formulation = match v(2) {
+                way if way > 2.5 => Loop::Dahl,
+                way if way > 1.5 => Loop::Exponential,
+                way if way > 0.5 => Loop::Stops,
+                _ => Loop::BoucWen,
+            };
             physics.hysteresis = Some(Hysteresis { torque_nm: v(0), displacement_rad: v(1), formulation });
         }
         "torque_ripple" => {

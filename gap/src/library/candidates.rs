@@ -89,7 +89,7 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
         "stribeck" => formulated(grid(effect, &[0.008, 0.025, 0.08, 0.25].map(|rate| vec![3e-4, rate])), 3),
         "friction_drift" => grid(effect, &[0.12, 0.4, 1.3].map(|share| vec![0.1, share * seconds])),
         "cable_hysteresis" => {
-            formulated(grid(effect, &[0.0015, 0.005, 0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])), 2)
+            formulated(grid(effect, &[0.0015, 0.005, 0.015, 0.05, 0.17, 0.5].map(|along| vec![3e-4, along])), 4)
         }
         "flexible_mode" => {
             grid(effect, &[35.0, 60.0, 100.0, 160.0, 250.0, 370.0].map(|hz| vec![0.015, hz, MODE_DAMPING]))

@@ -1,7 +1,9 @@
-//! The loop of the cable over the gimbal's angle, in two formulations of one initial stiffness and one full torque.
+//! The loop of the cable over the gimbal's angle, in four formulations of one initial stiffness and one full torque.
 //!
 //! ```text
 //! Bouc-Wen    torque = t z           dz = dx / d (1 - z^2)              under load, dx / d off it
+//! exponential torque = t z           dz = dx / d (1 - |z|)              under load, dx / d off it
+//! Dahl        torque = t z           dz = dx / d (1 - |z|)              under load, dx / d (1 + |z|) off it
 //! stops       torque = t sum s_i z_i dz_i = dx / d_i,  |z_i| <= 1       d_i = (i - 1/2) 2 d / n,  s_i = d_i / (n d)
 //! ```
 //!
@@ -10,7 +12,7 @@
 //! rest they follow `t (x / d - x^2 / (4 d^2))`, which is full at 2 d, and after a reversal twice that of half the way:
 //! rounder than Bouc-Wen's line to the middle of the loop.
 //!
-//! Sources: Y. K. Wen, *Method for random vibration of hysteretic systems*, J. Eng. Mech. 102 (EM2), 1976; W. D. Iwan, *A
+//! Sources: P. R. Dahl, *A solid friction model*, Aerospace Corporation TOR-0158(3107-18)-1, 1968; Y. K. Wen, *Method for random vibration of hysteretic systems*, J. Eng. Mech. 102 (EM2), 1976; W. D. Iwan, *A
 //! distributed-element model for hysteresis and its steady-state dynamic response*, J. Appl. Mech. 33 (4), 1966.
 
 use super::lanes::{Lanes, within};
@@ -61,7 +63,15 @@ impl Hysteresis {
             }
             return share;
         }
-        let slope = |z: f64| if z * turned_rad > 0.0 { 1.0 - z * z } else { 1.0 };
+        let slope = |z: f64| {
+            let loads = z * turned_rad > 0.0;
+            match self.formulation {
+                Loop::Dahl if !loads => 1.0 + z.abs(),
+                Loop::Dahl | Loop::Exponential if loads => 1.0 - z.abs(),
+                _ if loads => 1.0 - z * z,
+                _ => 1.0,
+            }
+        };
         let half = z + 0.5 * moved * slope(z);
         (z + moved * slope(half)).clamp(-1.0, 1.0)
     }
@@ -85,12 +95,12 @@ mod tests {
     }
 
     #[test]
-    fn closed_form_both_begin_with_one_stiffness_and_end_at_one_torque() {
-        for formulation in [Loop::BoucWen, Loop::Stops] {
-            let [stiff, full] = shares(formulation, &[0.01 * ALONG_RAD, 5.0 * ALONG_RAD])[..] else {
+    fn closed_form_all_begin_with_one_stiffness_and_end_at_one_torque() {
+        for formulation in [Loop::BoucWen, Loop::Stops, Loop::Exponential, Loop::Dahl] {
+            let [stiff, full] = shares(formulation, &[0.001 * ALONG_RAD, 9.0 * ALONG_RAD])[..] else {
                 panic!("two legs")
             };
-            assert!((stiff / 0.01 - 1.0).abs() < 1e-3, "{formulation:?} {stiff}");
+            assert!((stiff / 0.001 - 1.0).abs() < 1e-3, "{formulation:?} {stiff}");
             assert!((full - 1.0).abs() < 1e-3, "{formulation:?} {full}");
         }
     }
@@ -116,6 +126,16 @@ mod tests {
     fn closed_form_bouc_wen_loads_as_a_hyperbolic_tangent() {
         let [up] = shares(Loop::BoucWen, &[1.2 * ALONG_RAD])[..] else { panic!("a leg") };
         assert!((up - 1.2_f64.tanh()).abs() < 1e-7, "{up}");
+    }
+
+    #[test]
+    fn closed_form_exponents_of_one_load_along_an_exponential_and_differ_off_it() {
+        let along = |formulation| shares(formulation, &[1.2 * ALONG_RAD, 20.0 * ALONG_RAD, -0.5 * ALONG_RAD]);
+        let (line, sprung) = (along(Loop::Exponential), along(Loop::Dahl));
+        for loop_of in [&line, &sprung] {
+            assert!((loop_of[0] - (1.0 - (-1.2_f64).exp())).abs() < 1e-6, "{loop_of:?}");
+        }
+        assert!((line[2] - 0.5).abs() < 1e-6 && (sprung[2] - (2.0 * (-0.5_f64).exp() - 1.0)).abs() < 1e-6);
     }
 
     #[test]

@@ -139,6 +139,10 @@ pub enum Loop {
     BoucWen,
     /// Stops in parallel that yield one after the other.
     Stops,
+    /// The same with exponent 1: it loads along an exponential.
+    Exponential,
+    /// Dahl's, which springs back along one, too.
+    Dahl,
 }
 
 /// `s sin(n rel) + c cos(n rel)`.

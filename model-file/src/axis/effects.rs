@@ -4,7 +4,7 @@ use super::{AxisModel, AxisTolerance};
 use crate::fields::nearest;
 
 /// Names of the effects of an axis.
-pub const EFFECTS: [&str; 37] = [
+pub const EFFECTS: [&str; 36] = [
     "inertia",
     "viscous_friction",
     "friction_level",
@@ -34,7 +34,6 @@ pub const EFFECTS: [&str; 37] = [
     "external_load",
     "load_friction",
     "load_gain",
-    "load_ripple",
     "velocity_delay",
     "velocity_scale",
     "position_scale",

@@ -10,17 +10,54 @@ use crate::axis::plain::nominal;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(in crate::axis) const BEYOND: f64 = 1.15;
 
+/// A drive that answers within this [s], or a row, has no lag to be told of.
+const NO_LAG_S: f64 = 3e-4;
+
 /// Nominal parameters beyond what is known of them, by their places.
 pub(super) fn beyond(
     balance: &Balance,
     model: &AxisModel,
+    members: &[usize],
     shifts: [f64; 3],
     errors: [f64; 3],
 ) -> impl Iterator<Item = usize> {
     // and worth the price of an effect
     let grams = &balance.problem.grams;
     let worth = move |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
-    (0..3).filter(move |&index| worth(index) && !within(model, index, shifts[index], errors[index]))
+    let more = of_the_motor(balance, members);
+    let unsure = move |index: usize| errors[index] + more * nominal(model)[index];
+    let beside_a_lag = beside_a_lag(balance, members).unwrap_or(shifts);
+    (0..3).filter(move |&index| {
+        worth(index) && [shifts, beside_a_lag].iter().all(|own| !within(model, index, own[index], unsure(index)))
+    })
+}
+
+/// Shifts of the nominal parameters beside a lag of the drive that is too short to be one: what answers late by T seems to have
+/// less viscous friction by the square of the frequency, `B - w^2 J T`.
+fn beside_a_lag(balance: &Balance, members: &[usize]) -> Option<[f64; 3]> {
+    let candidates = &balance.problem.candidates;
+    let lag = candidates.iter().position(|candidate| candidate.shape == Shape::Lag)?;
+    if members.contains(&lag) {
+        return None;
+    }
+    let with = [members, &[lag]].concat();
+    let (columns, amplitudes) = balance.fit(&with);
+    let late_s = amplitudes[columns.iter().position(|column| *column == candidates[lag].columns[0])?];
+    let short = (0.0..NO_LAG_S.max(balance.motion.period_s)).contains(&late_s);
+    short.then(|| balance.shifts(&with, &columns, &amplitudes))
+}
+
+/// By how much a motor whose constant goes up and down needs more, whatever for:
+///
+/// ```text
+/// mean of 1 / (1 + r cos x) = 1 + r^2 / 2 + ...
+/// ```
+fn of_the_motor(balance: &Balance, members: &[usize]) -> f64 {
+    let (columns, amplitudes) = balance.fit(members);
+    let ripples = members.iter().map(|&member| &balance.problem.candidates[member]);
+    let ripples = ripples.filter(|candidate| matches!(candidate.shape, Shape::MotorRipple { .. }));
+    let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
+    ripples.flat_map(|candidate| &candidate.columns).map(|column| 0.5 * of(column).powi(2)).sum()
 }
 
 /// Names of a set's effects, each once.
@@ -31,7 +68,9 @@ pub(super) fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> 
     let mut names: Vec<String> = shapes
         .filter(|shape| !NOMINAL.contains(shape))
         .map(|shape| label(shape, &balance.motion))
-        .chain(beyond(balance, model, shifts, balance.of_noise()).map(|index| NOMINAL[index].effect().to_owned()))
+        .chain(
+            beyond(balance, model, members, shifts, balance.of_noise()).map(|index| NOMINAL[index].effect().to_owned()),
+        )
         .collect();
     names.sort();
     names.dedup();

@@ -123,7 +123,7 @@ impl Shape {
             Self::Load { .. } => "external_load",
             Self::LoadFriction { .. } => "load_friction",
             Self::LoadGain { .. } => "load_gain",
-            Self::LoadRipple { .. } => "load_ripple",
+            Self::LoadRipple { .. } => "compensation",
             Self::RateDelay => "velocity_delay",
         }
     }
