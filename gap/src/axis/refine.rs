@@ -1,7 +1,10 @@
 //! Shape parameters where the fit is best: between those that were tried.
 
+use std::f64::consts::TAU;
+
 use super::balance::Balance;
 use super::library::Shape;
+use super::motion::LEAST_WAVES;
 use super::regress::Grams;
 use super::search::Candidate;
 
@@ -19,6 +22,11 @@ impl Balance {
         for &member in members {
             let shape = self.problem.candidates[member].shape.clone();
             let Some(&(name, value)) = shape.numbers().first() else { continue };
+            // of fewer waves than the travel tells the number of, one a turn is gravity; another number is a spring
+            let least_wave = LEAST_WAVES * TAU / self.motion.travel.max(1e-300);
+            if name == "wave_number" && value < least_wave {
+                continue;
+            }
             let others: Vec<usize> = members.iter().copied().filter(|other| *other != member).collect();
             let rest: Vec<usize> = self.problem.columns(&others);
             let span =
@@ -29,6 +37,7 @@ impl Balance {
                 Shape::Mode { .. } => (value / MODE_SPAN, value * MODE_SPAN),
                 // wider than that it is a spring
                 Shape::Hysteresis { .. } => (value / span, (value * span).min(WIDEST_PLAY * self.motion.travel)),
+                _ if name == "wave_number" => ((value / span).max(least_wave), value * span),
                 _ => (value / span, value * span),
             };
             let cost = |number: f64| {

@@ -127,6 +127,14 @@ fn cross_short_sticks_at_reversals_leave_nothing() {
 }
 
 #[test]
+fn cross_friction_along_a_hyperbolic_tangent_is_no_effect() {
+    for smooth_rate in [1e-3, 3e-3, 6e-3] {
+        let diagnosis = diagnosed(&Truth { smooth_rate, ..Truth::nominal() }, Path::Sines, 3);
+        assert_eq!(diagnosis.verdict.name(), "no_gap", "{smooth_rate}: {}", text(&diagnosis));
+    }
+}
+
+#[test]
 fn cross_a_wrong_unit_is_told_and_undone() {
     let position_alone = position_alone();
     let as_is = log(&Truth::nominal(), Path::Sines, 24.0, 5);

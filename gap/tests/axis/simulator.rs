@@ -22,6 +22,8 @@ pub(crate) struct Truth {
     pub(crate) stribeck_rate: f64,
     /// Displacement over which friction builds up.
     pub(crate) bristle: f64,
+    /// Rate of a friction `tanh(v / rate)` in the place of bristles; none at 0.
+    pub(crate) smooth_rate: f64,
     /// Of Coulomb and of viscous friction.
     pub(crate) asymmetry: f64,
     pub(crate) viscous_asymmetry: f64,
@@ -56,6 +58,7 @@ impl Truth {
             static_excess: 0.0,
             stribeck_rate: 0.01,
             bristle: 2e-6,
+            smooth_rate: 0.0,
             asymmetry: 0.0,
             viscous_asymmetry: 0.0,
             drag: 0.0,
@@ -159,7 +162,8 @@ pub(crate) fn log(truth: &Truth, path: Path, length_s: f64, seed: u64) -> String
             // bristles are stiff: implicit step of z
             z = (z + step * v) / (1.0 + step * stiffness * v.abs() / level);
             let viscous = truth.viscous * (1.0 + truth.viscous_asymmetry * v.signum());
-            let force = stiffness * z + viscous * v + truth.drag * v * v.abs();
+            let friction = if truth.smooth_rate > 0.0 { level * (v / truth.smooth_rate).tanh() } else { stiffness * z };
+            let force = friction + viscous * v + truth.drag * v * v.abs();
             let acceleration = (gain * effort
                 - force
                 - ripple
