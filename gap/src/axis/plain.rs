@@ -4,11 +4,13 @@ use gimbal_model_file::AxisModel;
 
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::{Corner, Motion};
+use super::refine::golden;
 use super::regress::Grams;
 
-/// Rate up to which friction may come up to its level, over the fastest; steps of it; and what a rounder corner must leave at
-/// most of the root mean square.
-const WIDEST_ROUNDING: f64 = 0.03;
+/// Rate up to which friction may come up to its level, along a line and along a hyperbolic tangent, over the fastest; steps of
+/// it; and what a rounder corner must leave at most of the root mean square.
+const WIDEST_LINE: f64 = 0.03;
+const WIDEST_SMOOTH: f64 = 0.05;
 const ROUNDER: f64 = 1.25;
 const ROUNDED: f64 = 0.9;
 
@@ -86,26 +88,28 @@ fn fitted(motion: &Motion, beside: &[Shape], effort: &[f64]) -> (Needs, f64) {
 /// The motion with the friction that comes up to its level along the corner that explains most beside effects, and how plain
 /// least squares explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than
 /// the least only where that leaves a good deal less.
-pub(super) fn rounded(mut motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
+pub(super) fn rounded(motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
     let effort = motion.raw(&motion.effort);
     let (sharp, sharp_rest) = fitted(&motion, beside, &effort);
     if motion.stands {
         return (motion, sharp, sharp_rest);
     }
-    let (as_it_was, widest) = (motion.corner, WIDEST_ROUNDING * motion.fastest);
-    let rates = std::iter::successors(Some(ROUNDER * motion.quiet), |rate| Some(ROUNDER * rate));
-    let corners =
-        rates.take_while(|rate| *rate < widest).flat_map(|rate| [Corner::Line(rate), Corner::Smooth(0.5 * rate)]);
-    let mut best = (as_it_was, sharp, ROUNDED * sharp_rest);
-    for corner in corners {
-        motion = motion.with_corner(corner);
-        let (needs, rest) = fitted(&motion, beside, &effort);
-        if rest < best.2 {
-            best = (corner, needs, rest);
-        }
-    }
+    let as_it_was = motion.corner;
+    let left = |corner: Corner| fitted(&motion.clone().with_corner(corner), beside, &effort);
+    let best =
+        [(Corner::Line as fn(f64) -> Corner, WIDEST_LINE), (Corner::Smooth, WIDEST_SMOOTH)].map(|(along, widest)| {
+            let rates = std::iter::successors(Some(ROUNDER * motion.quiet), |rate| Some(ROUNDER * rate));
+            let rest = |rate: f64| left(along(rate)).1;
+            let tried = rates.take_while(|rate| *rate < widest * motion.fastest).map(|rate| (rate, rest(rate)));
+            let coarse = tried.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            let corner = along(golden(coarse.0 / ROUNDER, coarse.0 * ROUNDER, rest));
+            let (needs, rest) = left(corner);
+            Some((corner, needs, rest))
+        });
+    let best = best.into_iter().flatten().min_by(|a, b| a.2.total_cmp(&b.2));
+    let best = best.filter(|(.., rest)| *rest < ROUNDED * sharp_rest).unwrap_or((as_it_was, sharp, sharp_rest));
     let (corner, needs, rest) = best;
-    (motion.with_corner(corner), needs, if corner == as_it_was { sharp_rest } else { rest })
+    (motion.with_corner(corner), needs, rest)
 }
 
 /// Root mean square of what the nominal model leaves.

@@ -6,7 +6,7 @@ use super::columns;
 use super::follows::advance;
 use super::library::rms;
 use super::motion::{Motion, MotionFrom, NARROW, WIDE};
-use super::plain::nominal_rest;
+use super::plain::{nominal_rest, rounded};
 use super::table::AxisLog;
 use super::zero::take_zero_off;
 
@@ -38,8 +38,8 @@ pub(super) fn ready(mut log: AxisLog, model: &AxisModel) -> (AxisLog, columns::C
         motion
     };
     let mut motion = motion_of(NARROW);
-    // a large gap stands out of more noise: a wider band shows more of it
-    if nominal_rest(&motion, model) > LARGE_GAP * rms(&motion.pick(&motion.effort)) {
+    // a large gap stands out of more noise: a wider band shows more of it; what friction's corner makes is none
+    if nominal_rest(&rounded(motion.clone(), &[]).0, model) > LARGE_GAP * rms(&motion.pick(&motion.effort)) {
         motion = motion_of(WIDE);
     }
     (log, checked, motion)

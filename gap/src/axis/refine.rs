@@ -75,7 +75,7 @@ impl Balance {
 }
 
 /// Smallest value of a function of a logarithm, by golden section.
-fn golden(from: f64, to: f64, cost: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn golden(from: f64, to: f64, cost: impl Fn(f64) -> f64) -> f64 {
     let ratio = 0.618_034;
     let (mut low, mut high) = (from.ln(), to.ln());
     let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));

@@ -128,8 +128,9 @@ fn cross_short_sticks_at_reversals_leave_nothing() {
 
 #[test]
 fn cross_friction_along_a_hyperbolic_tangent_is_no_effect() {
-    for smooth_rate in [1e-3, 3e-3, 6e-3] {
-        let diagnosis = diagnosed(&Truth { smooth_rate, ..Truth::nominal() }, Path::Sines, 3);
+    for smooth_rate in [5e-4, 1e-3, 4e-3] {
+        let off = Truth { inertia: 81.5, viscous: 147.0, coulomb: 22.5, smooth_rate, ..Truth::nominal() };
+        let diagnosis = diagnosed(&off, Path::Strokes, 3);
         assert_eq!(diagnosis.verdict.name(), "no_gap", "{smooth_rate}: {}", text(&diagnosis));
     }
 }

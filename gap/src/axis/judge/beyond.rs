@@ -28,7 +28,10 @@ pub(super) fn beyond(
     let unsure = move |index: usize| errors[index] + more * nominal(model)[index];
     let beside_a_lag = beside_a_lag(balance, members).unwrap_or(shifts);
     (0..3).filter(move |&index| {
-        worth(index) && [shifts, beside_a_lag].iter().all(|own| !within(model, index, own[index], unsure(index)))
+        // a lag is known to a factor of two: what the effort needs, which it is of, hangs on the parameters
+        let own = [0.0, 1.0, 2.0].map(|lags| shifts[index] + lags * (beside_a_lag[index] - shifts[index]));
+        let one_way = own[0] * own[2] > 0.0;
+        worth(index) && one_way && own.iter().all(|own| !within(model, index, *own, unsure(index)))
     })
 }
 
