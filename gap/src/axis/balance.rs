@@ -6,7 +6,7 @@ use super::floor::floor_left;
 use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
-use super::plain::{Needs, columns as columns_of, nominal, rounded};
+use super::plain::{Needs, as_it_is, columns as columns_of, nominal, rounded};
 use super::regress::Grams;
 use super::resonance::modes;
 use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
@@ -53,8 +53,7 @@ impl Balance {
     /// parameters lack may look like a rounder corner: where another one leaves less beside what is found, all is looked for
     /// once more.
     pub(super) fn searched(motion: Motion, model: &AxisModel) -> (Self, Set) {
-        let mut balance = Self::new(rounded(motion.clone(), &[]), model, &[]);
-        let set = balance.search(model);
+        let (balance, set) = Self::with_either_corner(&motion, model);
         // plain least squares have the nominal parameters already
         let added = |shape: &&Shape| **shape != Shape::Scale && !NOMINAL.contains(shape) && !shape.hangs_on_effort();
         let shapes = set.members.iter().map(|&member| &balance.problem.candidates[member].shape);
@@ -70,6 +69,20 @@ impl Balance {
         let mut again = Self::new(beside, model, &found);
         let other = again.search(model);
         if again.problem.key(&other) < balance.problem.key(&set) { (again, other) } else { (balance, set) }
+    }
+
+    /// The balance with the corner that leaves least, or with a sharp one where effects explain more: friction that goes on to
+    /// rise with a power of the rate looks like a round corner.
+    fn with_either_corner(motion: &Motion, model: &AxisModel) -> (Self, Set) {
+        let mut round = Self::new(rounded(motion.clone(), &[]), model, &[]);
+        let of_round = round.search(model);
+        if round.motion.corner == motion.corner || round.problem.effects(&of_round.members) == 0 {
+            return (round, of_round);
+        }
+        let mut sharp = Self::new(as_it_is(motion.clone(), &[]), model, &[]);
+        let of_sharp = sharp.search(model);
+        let nearer = sharp.problem.key(&of_sharp) < round.problem.key(&of_round);
+        if nearer { (sharp, of_sharp) } else { (round, of_round) }
     }
 
     /// Makes the balance and every column, friction's corner as it is beside some effects.

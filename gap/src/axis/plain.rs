@@ -85,12 +85,18 @@ fn fitted(motion: &Motion, beside: &[Shape], effort: &[f64]) -> (Needs, f64) {
     (Needs { parameters: [fit[0], fit[1], fit[2], fit[3]], effects }, rest)
 }
 
+/// A motion, how plain least squares explain it beside effects, and what they leave.
+pub(super) fn as_it_is(motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
+    let (needs, rest) = fitted(&motion, beside, &motion.raw(&motion.effort));
+    (motion, needs, rest)
+}
+
 /// The motion with the friction that comes up to its level along the corner that explains most beside effects, and how plain
 /// least squares explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than
 /// the least only where that leaves a good deal less.
 pub(super) fn rounded(motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
     let effort = motion.raw(&motion.effort);
-    let (sharp, sharp_rest) = fitted(&motion, beside, &effort);
+    let (motion, sharp, sharp_rest) = as_it_is(motion, beside);
     if motion.stands {
         return (motion, sharp, sharp_rest);
     }
