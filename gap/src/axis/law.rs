@@ -38,6 +38,8 @@ const AT_LIMIT: f64 = 0.995;
 const FREED: f64 = 0.25;
 /// Rows that a law must be held against, at least.
 const LEAST_ROWS: usize = 200;
+/// Share of the rows of slip that may be of the other way, where it is one way.
+const OTHER_WAY: f64 = 0.02;
 /// Share of the output below which a law is as good as any.
 const NOISE: f64 = 1e-3;
 
@@ -75,6 +77,15 @@ fn free_rows(m: &mut Motion, output: &[f64], model: &AxisModel, controller: &Con
     }
     let kept = m.rows.iter().zip(&m.block).filter(|(row, _)| free[**row]);
     (m.rows, m.block) = kept.map(|(row, block)| (*row, *block)).unzip();
+}
+
+/// Whether the axis slips one way only while a channel is on: what it adds by the sign of the rate is then what it adds.
+fn slips_one_way(m: &Motion, channel: usize) -> bool {
+    let directions = m.pick(&m.s).into_iter().zip(m.pick(&m.auxiliary[channel].1)).filter(|(_, on)| *on != 0.0);
+    let (ahead, back) = directions.fold((0_usize, 0), |(ahead, back), (direction, _)| {
+        (ahead + usize::from(direction > 0.0), back + usize::from(direction < 0.0))
+    });
+    ahead.min(back) as f64 <= OTHER_WAY * (ahead + back) as f64
 }
 
 /// Waves over the position that stand out of a residual while a channel is on.
@@ -278,6 +289,14 @@ fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
             }
             _ => shape.effect().to_owned(),
         };
+        if let Shape::Load { channel: c } | Shape::LoadFriction { channel: c } = shape
+            && slips_one_way(&m, *c)
+        {
+            law.words.push(format!(
+                "the axis slips one way while `{}` is on: a load and a compensation of friction are one there",
+                channel(*c)
+            ));
+        }
         let gain = (without.square() - best.square()) / before.iter().sum::<f64>().max(1e-300);
         law.found.push(Found {
             effect,
