@@ -45,7 +45,7 @@ impl Columns {
         .collect()
     }
 
-    /// Places in [`CHANNELS`].
+    /// Places in [`crate::scene::CHANNELS`].
     pub(super) fn channels(self) -> Vec<usize> {
         [true, self.torque, self.gimbal]
             .iter()
