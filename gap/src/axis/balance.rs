@@ -6,7 +6,7 @@ use super::floor::floor_left;
 use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
-use super::plain::{Needs, as_it_is, columns as columns_of, nominal, rounded};
+use super::plain::{Needs, columns as columns_of, nominal, nominally, rounded};
 use super::regress::Grams;
 use super::resonance::modes;
 use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
@@ -66,9 +66,8 @@ impl Balance {
         if as_round && beside.1.share_of_effects(&beside.0) < MUCH_NEEDED {
             return (balance, set);
         }
-        let mut again = Self::new(beside, model, &found);
-        let other = again.search(model);
-        if again.problem.key(&other) < balance.problem.key(&set) { (again, other) } else { (balance, set) }
+        let again = Self::new(beside, model, &found);
+        again.or_nearer(model, (balance, set))
     }
 
     /// The balance with the corner that leaves least, or with a sharp one where effects explain more: friction that goes on to
@@ -79,10 +78,15 @@ impl Balance {
         if round.motion.corner == motion.corner || round.problem.effects(&of_round.members) == 0 {
             return (round, of_round);
         }
-        let mut sharp = Self::new(as_it_is(motion.clone(), &[]), model, &[]);
-        let of_sharp = sharp.search(model);
-        let nearer = sharp.problem.key(&of_sharp) < round.problem.key(&of_round);
-        if nearer { (sharp, of_sharp) } else { (round, of_round) }
+        let (needs, rest) = nominally(motion);
+        let sharp = Self::new((motion.clone(), needs, rest), model, &[]);
+        sharp.or_nearer(model, (round, of_round))
+    }
+
+    /// This balance and what it shows, or another that explains as much with fewer effects, or more.
+    fn or_nearer(mut self, model: &AxisModel, other: (Self, Set)) -> (Self, Set) {
+        let own = self.search(model);
+        if self.problem.key(&own) < other.0.problem.key(&other.1) { (self, own) } else { other }
     }
 
     /// Makes the balance and every column, friction's corner as it is beside some effects.

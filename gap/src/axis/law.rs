@@ -11,7 +11,7 @@ use gimbal_model_file::AxisModel;
 use gimbal_model_file::axis::{Controller, Output};
 
 use super::columns::Checked;
-use super::judge::{Found, Parameter, Shrunk, deviation, parameters, shrunk};
+use super::judge::{Found, Parameter, Shrunk, deviation, label, parameters, shrunk};
 use super::library::{Shape, rms};
 use super::motion::Motion;
 use super::regress::{Draws, Grams};
@@ -283,11 +283,8 @@ fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         let channel = |channel: usize| &m.auxiliary[channel].0;
         let effect = match shape {
             Shape::Constant => "command_bias".to_owned(),
-            Shape::Load { channel: c } => format!("external_load:{}", channel(*c)),
-            Shape::LoadFriction { channel: c } | Shape::LoadRipple { channel: c, .. } => {
-                format!("compensation:{}", channel(*c))
-            }
-            _ => shape.effect().to_owned(),
+            Shape::LoadFriction { channel: c } => format!("compensation:{}", channel(*c)),
+            _ => label(shape, &m),
         };
         if let Shape::Load { channel: c } | Shape::LoadFriction { channel: c } = shape
             && slips_one_way(&m, *c)

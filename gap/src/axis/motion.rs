@@ -242,13 +242,12 @@ impl Motion {
         }
     }
 
-    /// The same with friction that comes up to its level along such a corner.
-    pub(super) fn with_corner(mut self, corner: Corner) -> Self {
+    /// Has friction come up to its level along such a corner.
+    pub(super) fn set_corner(&mut self, corner: Corner) {
         if !self.stands {
             self.corner = corner;
             self.s = self.v.iter().map(|v| corner.share(*v)).collect();
         }
-        self
     }
 
     /// Standard deviation of the whole smoothing [rows].

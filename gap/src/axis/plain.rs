@@ -57,7 +57,7 @@ impl Needs {
 /// The parameters of a motion by plain least squares, with a constant, and the root mean square of what they leave: a
 /// first look, and what effects of the effort hang on.
 pub(super) fn plain(motion: &Motion) -> ([f64; 4], f64) {
-    let (needs, rest) = fitted(motion, &[], &motion.raw(&motion.effort));
+    let (needs, rest) = nominally(motion);
     (needs.parameters, rest)
 }
 
@@ -85,37 +85,40 @@ fn fitted(motion: &Motion, beside: &[Shape], effort: &[f64]) -> (Needs, f64) {
     (Needs { parameters: [fit[0], fit[1], fit[2], fit[3]], effects }, rest)
 }
 
-/// A motion, how plain least squares explain it beside effects, and what they leave.
-pub(super) fn as_it_is(motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
-    let (needs, rest) = fitted(&motion, beside, &motion.raw(&motion.effort));
-    (motion, needs, rest)
+/// How plain least squares explain a motion without effects, and what they leave.
+pub(super) fn nominally(motion: &Motion) -> (Needs, f64) {
+    fitted(motion, &[], &motion.raw(&motion.effort))
 }
 
 /// The motion with the friction that comes up to its level along the corner that explains most beside effects, and how plain
 /// least squares explain it then: an axis that creeps to rest has less than all of it, and how much is no effect. Wider than
 /// the least only where that leaves a good deal less.
-pub(super) fn rounded(motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
+pub(super) fn rounded(mut motion: Motion, beside: &[Shape]) -> (Motion, Needs, f64) {
     let effort = motion.raw(&motion.effort);
-    let (motion, sharp, sharp_rest) = as_it_is(motion, beside);
+    let (sharp, sharp_rest) = fitted(&motion, beside, &effort);
     if motion.stands {
         return (motion, sharp, sharp_rest);
     }
-    let as_it_was = motion.corner;
-    let left = |corner: Corner| fitted(&motion.clone().with_corner(corner), beside, &effort);
+    let (as_it_was, quiet, fastest) = (motion.corner, motion.quiet, motion.fastest);
+    let mut left = |corner: Corner| {
+        motion.set_corner(corner);
+        fitted(&motion, beside, &effort)
+    };
     let best =
         [(Corner::Line as fn(f64) -> Corner, WIDEST_LINE), (Corner::Smooth, WIDEST_SMOOTH)].map(|(along, widest)| {
-            let rates = std::iter::successors(Some(ROUNDER * motion.quiet), |rate| Some(ROUNDER * rate));
-            let rest = |rate: f64| left(along(rate)).1;
-            let tried = rates.take_while(|rate| *rate < widest * motion.fastest).map(|rate| (rate, rest(rate)));
+            let rates = std::iter::successors(Some(ROUNDER * quiet), |rate| Some(ROUNDER * rate));
+            let mut rest = |rate: f64| left(along(rate)).1;
+            let tried = rates.take_while(|rate| *rate < widest * fastest).map(|rate| (rate, rest(rate)));
             let coarse = tried.min_by(|a, b| a.1.total_cmp(&b.1))?;
-            let corner = along(golden(coarse.0 / ROUNDER, coarse.0 * ROUNDER, rest));
+            let corner = along(golden(coarse.0 / ROUNDER, coarse.0 * ROUNDER, &mut rest));
             let (needs, rest) = left(corner);
             Some((corner, needs, rest))
         });
     let best = best.into_iter().flatten().min_by(|a, b| a.2.total_cmp(&b.2));
     let best = best.filter(|(.., rest)| *rest < ROUNDED * sharp_rest).unwrap_or((as_it_was, sharp, sharp_rest));
     let (corner, needs, rest) = best;
-    (motion.with_corner(corner), needs, rest)
+    motion.set_corner(corner);
+    (motion, needs, rest)
 }
 
 /// Root mean square of what the nominal model leaves.

@@ -22,22 +22,22 @@ impl Balance {
         for &member in members {
             let shape = self.problem.candidates[member].shape.clone();
             let Some(&(name, value)) = shape.numbers().first() else { continue };
+            let wave = name == "wave_number";
             // of fewer waves than the travel tells the number of, one a turn is gravity; another number is a spring
             let least_wave = LEAST_WAVES * TAU / self.motion.travel.max(1e-300);
-            if name == "wave_number" && value < least_wave {
+            if wave && value < least_wave {
                 continue;
             }
             let others: Vec<usize> = members.iter().copied().filter(|other| *other != member).collect();
             let rest: Vec<usize> = self.problem.columns(&others);
-            let span =
-                if name == "wave_number" { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
+            let span = if wave { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
             let (from, to) = match &shape {
                 Shape::ViscousCurve { .. } => (0.45, 0.85),
                 // a resonance has one peak no further than its neighbours in the scan
                 Shape::Mode { .. } => (value / MODE_SPAN, value * MODE_SPAN),
                 // wider than that it is a spring
                 Shape::Hysteresis { .. } => (value / span, (value * span).min(WIDEST_PLAY * self.motion.travel)),
-                _ if name == "wave_number" => ((value / span).max(least_wave), value * span),
+                _ if wave => ((value / span).max(least_wave), value * span),
                 _ => (value / span, value * span),
             };
             let cost = |number: f64| {
@@ -52,7 +52,7 @@ impl Balance {
             };
             let best = golden(from, to, cost);
             // a turn has a whole number of waves, but of what turns behind a gear
-            if name == "wave_number" && self.motion.rotary && cost(best) > BEHIND_A_GEAR * cost(value) {
+            if wave && self.motion.rotary && cost(best) > BEHIND_A_GEAR * cost(value) {
                 continue;
             }
             let shape = shape.with(best);
@@ -75,7 +75,7 @@ impl Balance {
 }
 
 /// Smallest value of a function of a logarithm, by golden section.
-pub(super) fn golden(from: f64, to: f64, cost: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn golden(from: f64, to: f64, mut cost: impl FnMut(f64) -> f64) -> f64 {
     let ratio = 0.618_034;
     let (mut low, mut high) = (from.ln(), to.ln());
     let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));

@@ -20,8 +20,8 @@ pub(super) fn score(
     log: AxisLog,
     notes: &mut Vec<String>,
 ) -> Vec<Shrunk> {
-    let (_, checked, motion) = ready(log, model);
-    let mut motion = motion.with_corner(balance.motion.corner);
+    let (_, checked, mut motion) = ready(log, model);
+    motion.set_corner(balance.motion.corner);
     if Some(balance.motion.from) != checked.from {
         notes.push(format!("{name}: its motion is taken from the other column"));
     }

@@ -6,6 +6,7 @@ use crate::axis::balance::Balance;
 use crate::axis::library::{NOMINAL, Shape, rms};
 use crate::axis::motion::Motion;
 use crate::axis::plain::nominal;
+use crate::axis::search::Candidate;
 
 /// A nominal parameter is an effect from this many tolerances on.
 pub(in crate::axis) const BEYOND: f64 = 1.15;
@@ -20,19 +21,27 @@ pub(super) fn beyond(
     members: &[usize],
     shifts: [f64; 3],
     errors: [f64; 3],
-) -> impl Iterator<Item = usize> {
+) -> Vec<usize> {
     // and worth the price of an effect
     let grams = &balance.problem.grams;
-    let worth = move |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
+    let worth = |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
     let more = of_the_motor(balance, members);
-    let unsure = move |index: usize| errors[index] + more * nominal(model)[index];
-    let beside_a_lag = beside_a_lag(balance, members).unwrap_or(shifts);
-    (0..3).filter(move |&index| {
+    let outside = |index: usize, shift: f64| {
+        let unsure = errors[index] + more * nominal(model)[index];
+        !within(model, index, shift, unsure)
+    };
+    let mut beyond: Vec<usize> = (0..3).filter(|&index| worth(index) && outside(index, shifts[index])).collect();
+    if !beyond.is_empty()
+        && let Some(beside) = beside_a_lag(balance, members)
+    {
         // a lag is known to a factor of two: what the effort needs, which it is of, hangs on the parameters
-        let own = [0.0, 1.0, 2.0].map(|lags| shifts[index] + lags * (beside_a_lag[index] - shifts[index]));
-        let one_way = own[0] * own[2] > 0.0;
-        worth(index) && one_way && own.iter().all(|own| !within(model, index, *own, unsure(index)))
-    })
+        let at = |index: usize, lags: f64| shifts[index] + lags * (beside[index] - shifts[index]);
+        beyond.retain(|&index| {
+            let one_way = shifts[index] * at(index, 2.0) > 0.0;
+            one_way && [1.0, 2.0].iter().all(|lags| outside(index, at(index, *lags)))
+        });
+    }
+    beyond
 }
 
 /// Shifts of the nominal parameters beside a lag of the drive that is too short to be one: what answers late by T seems to have
@@ -56,11 +65,15 @@ fn beside_a_lag(balance: &Balance, members: &[usize]) -> Option<[f64; 3]> {
 /// mean of 1 / (1 + r cos x) = 1 + r^2 / 2 + ...
 /// ```
 fn of_the_motor(balance: &Balance, members: &[usize]) -> f64 {
+    let candidates = members.iter().map(|&member| &balance.problem.candidates[member]);
+    let ripples: Vec<&Candidate> =
+        candidates.filter(|candidate| matches!(candidate.shape, Shape::MotorRipple { .. })).collect();
+    if ripples.is_empty() {
+        return 0.0;
+    }
     let (columns, amplitudes) = balance.fit(members);
-    let ripples = members.iter().map(|&member| &balance.problem.candidates[member]);
-    let ripples = ripples.filter(|candidate| matches!(candidate.shape, Shape::MotorRipple { .. }));
     let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
-    ripples.flat_map(|candidate| &candidate.columns).map(|column| 0.5 * of(column).powi(2)).sum()
+    ripples.iter().flat_map(|candidate| &candidate.columns).map(|column| 0.5 * of(column).powi(2)).sum()
 }
 
 /// Names of a set's effects, each once.
@@ -72,7 +85,9 @@ pub(super) fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> 
         .filter(|shape| !NOMINAL.contains(shape))
         .map(|shape| label(shape, &balance.motion))
         .chain(
-            beyond(balance, model, members, shifts, balance.of_noise()).map(|index| NOMINAL[index].effect().to_owned()),
+            beyond(balance, model, members, shifts, balance.of_noise())
+                .into_iter()
+                .map(|index| NOMINAL[index].effect().to_owned()),
         )
         .collect();
     names.sort();

@@ -95,7 +95,7 @@ pub(super) fn found(
             (shape.clone(), label(shape, &balance.motion), fitted.power(balance, member), told)
         })
         .collect();
-    let shifted = beyond(balance, model, fitted.members, fitted.shifts, unsure).map(|index| {
+    let shifted = beyond(balance, model, fitted.members, fitted.shifts, unsure).into_iter().map(|index| {
         let shape = NOMINAL[index].clone();
         let samples: Vec<Vec<f64>> = fitted.shifted.iter().map(|shifts| vec![shifts[index]]).collect();
         let told = parameters(&shape, &[fitted.shifts[index]], &samples, model, &balance.motion);
