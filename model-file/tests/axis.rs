@@ -54,6 +54,7 @@ fn contract_mistakes_name_their_place_and_what_would_be_right() {
             "unit = \"mm\"",
             "line 8, column 1: `axis.columns.position` has the unit \"mm\"; write one of \"rad\"",
         ),
+        ("\"q\", unit = \"deg\" }", "\"q\" }", "`axis.columns.position` has no `unit`; write one of \"rad\""),
         ("unit = \"mA\"", "unit = \"N\"", "`axis.columns.effort` has the unit \"N\"; write one of \"A\", \"mA\""),
         ("motion = \"rotary\"", "motion = \"round\"", "line 2, column 10"),
         ("inertia = 2e-4\n", "", "missing field `inertia`"),

@@ -7,6 +7,7 @@ use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
 use super::plain::{Needs, columns as columns_of, nominal, nominally, rounded};
+use super::play::plays;
 use super::regress::Grams;
 use super::resonance::modes;
 use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
@@ -108,6 +109,9 @@ impl Balance {
         tried.extend(waves(&motion, &target, &base));
         if !motion.stands {
             tried.extend(modes(&motion, &target, &base));
+            if stands_out(&target, &motion) {
+                tried.extend(plays(&motion, &target, &base));
+            }
         }
         tried.retain(|shape| !model.trusts(shape.effect()));
         let made: Vec<(Shape, Vec<Vec<f64>>)> = {
@@ -194,7 +198,7 @@ impl Balance {
 
     /// Whether the nominal model leaves more than noise.
     pub(super) fn has_gap(&self) -> bool {
-        rms(&self.target).powi(2) > NOTABLE * self.motion.floor.max(1e-300).powi(2)
+        stands_out(&self.target, &self.motion)
     }
 
     /// Amplitudes of a set's columns.
@@ -253,6 +257,11 @@ impl Balance {
         }
         residual
     }
+}
+
+/// Whether a balance is more than noise.
+fn stands_out(target: &[f64], motion: &Motion) -> bool {
+    rms(target).powi(2) > NOTABLE * motion.floor.max(1e-300).powi(2)
 }
 
 /// Share of its power that a column keeps beside others.

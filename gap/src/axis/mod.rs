@@ -4,6 +4,7 @@
 
 mod balance;
 mod beat;
+mod beside;
 mod channels;
 mod columns;
 mod diagnose;
@@ -18,6 +19,7 @@ mod motion;
 mod noise;
 mod place;
 mod plain;
+mod play;
 mod ready;
 mod refine;
 mod regress;

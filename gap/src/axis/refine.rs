@@ -40,8 +40,8 @@ impl Balance {
                 _ if wave => ((value / span).max(least_wave), value * span),
                 _ => (value / span, value * span),
             };
-            let cost = |number: f64| {
-                let grid = shape.with(number).on_grid(&self.motion);
+            let cost = |shape: &Shape| {
+                let grid = shape.on_grid(&self.motion);
                 let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
                 columns.extend(grid);
                 let mut grams = Grams::new(&columns, &self.target, &self.motion.block);
@@ -50,12 +50,17 @@ impl Balance {
                 }
                 grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
             };
-            let best = golden(from, to, cost);
+            let best = match shape {
+                Shape::Backlash(play) => Shape::Backlash(play.refined(|play| {
+                    if play.is_likely(&self.motion) { cost(&Shape::Backlash(play)) } else { f64::MAX }
+                })),
+                _ => shape.with(golden(from, to, |number| cost(&shape.with(number)))),
+            };
             // a turn has a whole number of waves, but of what turns behind a gear
-            if wave && self.motion.rotary && cost(best) > BEHIND_A_GEAR * cost(value) {
+            if wave && self.motion.rotary && cost(&best) > BEHIND_A_GEAR * cost(&shape) {
                 continue;
             }
-            let shape = shape.with(best);
+            let shape = best;
             let start = self.columns.len();
             self.columns.extend(shape.on_grid(&self.motion));
             for column in &self.columns[start..] {

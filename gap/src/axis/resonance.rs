@@ -9,9 +9,9 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::beside::Beside;
 use super::library::Shape;
 use super::motion::Motion;
 
@@ -43,20 +43,8 @@ pub(super) fn column(acceleration: &[f64], period_s: f64, frequency_hz: f64, dam
 
 /// Modes that take most of what base columns and a constant leave of a balance.
 pub(super) fn modes(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<Shape> {
-    let constant = vec![1.0; target.len()];
-    let beside: Vec<&[f64]> = base.iter().chain([&constant]).map(Vec::as_slice).collect();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let gram = DMatrix::from_fn(beside.len(), beside.len(), |i, j| dot(beside[i], beside[j]));
-    let Some(gram) = gram.cholesky() else { return Vec::new() };
-    let along = |values: &[f64]| DVector::from_iterator(beside.len(), beside.iter().map(|own| dot(own, values)));
-    let of_target = gram.solve(&along(target));
-    let gain = |shape: Shape| {
-        let column = shape.on_grid(motion).remove(0);
-        let shared = along(&column);
-        let kept = dot(&column, &column) - shared.dot(&gram.solve(&shared));
-        let speaks = dot(&column, target) - shared.dot(&of_target);
-        (speaks.max(0.0).powi(2) / kept.max(1e-300), shape)
-    };
+    let Some(beside) = Beside::new(target.to_vec(), base) else { return Vec::new() };
+    let gain = |shape: Shape| (beside.gain(&shape.on_grid(motion)[0]), shape);
     let highest_hz = motion.band_hz.min(0.4 / motion.period_s);
     let frequencies = std::iter::successors(Some(PERIODS / motion.length_s()), |hz| Some(hz * STEP));
     let all: Vec<Shape> = frequencies

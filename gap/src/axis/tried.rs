@@ -8,7 +8,7 @@ use super::motion::{LEAST_WAVES, Motion};
 /// Travel from which on one wave a turn is tried, however few of them the others must have.
 const GRAVITY_SHOWS_RAD: f64 = 1.5;
 
-/// Everything that is tried without a search for numbers of waves.
+/// Everything that is tried without a search for numbers of waves, modes and plays.
 pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
     let mut shapes = vec![
         Shape::Inertia,
@@ -41,7 +41,6 @@ pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
         let length = share * m.travel;
         if length > 4.0 * m.position_noise {
             shapes.push(Shape::Presliding { displacement: length });
-            shapes.push(Shape::Backlash { width: length });
         }
     }
     // gravity on an arm has one wave a turn; on a shorter way it is a spring

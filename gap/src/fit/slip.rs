@@ -46,7 +46,7 @@ const LEAST: f64 = 1e-3;
 const SMALLER: f64 = 0.6;
 const SIZES: usize = 12;
 /// Twice the logarithm by which likelihoods differ that are alike.
-const ALIKE: f64 = 4.0;
+const ALIKE: f64 = 10.0;
 
 /// Rows of a block.
 type Block = std::ops::Range<usize>;

@@ -18,6 +18,8 @@ const REMEMBERED_S: [f64; 4] = [0.3, 1.0, 4.0, 15.0];
 const QUICK_S: f64 = 0.01;
 /// Time constant of a motor's heat [s].
 const HEAT_S: f64 = 5.0;
+/// Rate that is none, over the noise of a logged one.
+const AT_REST: f64 = 4.0;
 /// Torque over its rms within which its sign is no step.
 const SOFT: f64 = 0.02;
 
@@ -97,6 +99,9 @@ impl<'a> Motion<'a> {
     fn new(problem: &Problem, fit: &'a Fit) -> Self {
         let inputs = &problem.record.inputs;
         let (rel, slip) = (inputs.rel_rad(&fit.prediction), inputs.slip_radps(&fit.prediction));
+        // of a bearing at rest the logged rate is its noise, which friction has made a torque of
+        let at_rest = AT_REST * problem.record.rate_noise.rms_radps;
+        let slip: Series = slip.iter().map(|slip| slip - slip.clamp(-at_rest, at_rest)).collect();
         let soft = problem.base.config.bearing.slip_rate_radps;
         let rows: Series = (0..inputs.len()).map(|k| k as f64).collect();
         Self {

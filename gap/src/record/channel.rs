@@ -70,6 +70,11 @@ impl Channel {
         Self { signal, values, valid }
     }
 
+    /// Whether the log has no sample there.
+    pub(crate) fn is_missing(&self, row: usize) -> bool {
+        !self.valid[row] && self.values[row] == 0.0
+    }
+
     /// Largest size of a value that is held for a few rows.
     pub(crate) fn held_peak(&self) -> f64 {
         let sizes: Vec<f64> =

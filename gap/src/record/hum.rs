@@ -39,6 +39,12 @@ const PREDICTED: f64 = 0.1;
 /// the band is vibration, unless the outputs tell otherwise.
 const LARGEST: f64 = 3.0;
 
+/// Parts of the log that must have the line of the whole, and how far each may be off: of its amplitude, and of the deviations
+/// that noise makes.
+const PARTS: usize = 4;
+const UNSTEADY: f64 = 0.3;
+const LEAST_OFF: f64 = 4.0;
+
 /// A line that was taken out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Hum {
@@ -167,19 +173,39 @@ struct Series {
 }
 
 impl Series {
+    /// Amplitudes of sine and cosine of a frequency, under a window that begins at a row.
+    fn amplitudes(&self, hz: f64, window: &[f64], from: usize) -> [f64; 2] {
+        let weight = 0.5 * window.iter().sum::<f64>();
+        let rows = self.values[from..].iter().zip(window).zip(from..);
+        rows.fold([0.0; 2], |[sine, cosine], ((value, window), row)| {
+            let (sin, cos) = self.wave(hz, row);
+            [sine + window * value * sin / weight, cosine + window * value * cos / weight]
+        })
+    }
+
+    fn wave(&self, hz: f64, row: usize) -> (f64, f64) {
+        (TAU * hz * row as f64 * self.period_s).sin_cos()
+    }
+
+    /// Whether a line is as it is in each part of the log: the supply hums on, a vehicle shakes as it drives.
+    fn steady(&self, line: &Line) -> bool {
+        let all = self.amplitudes(line.hz, &self.window, 0);
+        let part = hann(self.values.len() / PARTS);
+        let power = |window: &[f64]| window.iter().map(|w| w * w).sum::<f64>();
+        let deviation = 2.0 * (line.noise / power(&self.window) * power(&part)).sqrt() / part.iter().sum::<f64>();
+        let within = UNSTEADY * all[0].hypot(all[1]) + LEAST_OFF * deviation;
+        (0..PARTS).all(|place| {
+            let own = self.amplitudes(line.hz, &part, place * part.len());
+            (own[0] - all[0]).hypot(own[1] - all[1]) < within
+        })
+    }
+
     /// Takes a line of one frequency out of a series of such noise.
     fn take_out(&mut self, hz: f64, noise: f64) -> Hum {
-        let (period_s, weight) = (self.period_s, self.window.iter().sum::<f64>());
-        let wave = |k: usize| (TAU * hz * k as f64 * period_s).sin_cos();
-        let (mut sine, mut cosine) = (0.0, 0.0);
-        for (k, (value, window)) in self.values.iter().zip(&self.window).enumerate() {
-            let (sin, cos) = wave(k);
-            sine += 2.0 * window * value * sin / weight;
-            cosine += 2.0 * window * value * cos / weight;
-        }
-        for (k, value) in self.values.iter_mut().enumerate() {
-            let (sin, cos) = wave(k);
-            *value -= sine * sin + cosine * cos;
+        let [sine, cosine] = self.amplitudes(hz, &self.window, 0);
+        for row in 0..self.values.len() {
+            let (sin, cos) = self.wave(hz, row);
+            self.values[row] -= sine * sin + cosine * cos;
         }
         let amplitude = sine.hypot(cosine);
         Hum { hz, amplitude, over_noise: amplitude / noise }
@@ -205,15 +231,17 @@ impl Series {
     }
 
     /// The strongest line between two frequencies, if it may be hum: no larger than that, none of many side by side, as a motion
-    /// has that comes again and again, and none that what moves has, too.
+    /// has that comes again and again, none where what moves has as much, and the same all along.
     fn hum(&self, powers: &[f64], moves: Option<&[f64]>, between_hz: [f64; 2]) -> Option<Line> {
         // (A sum w / 2)^2 over sigma^2 sum w^2
         let sum: f64 = self.window.iter().sum();
         let largest = (0.5 * LARGEST * sum).powi(2) / self.window.iter().map(|w| w * w).sum::<f64>();
         let line = self.line(powers, between_hz)?;
-        let moved = moves.and_then(|moves| self.line(moves, self.near_hz(line.hz))).map_or(0.0, |moved| moved.power);
+        let moved =
+            moves.and_then(|moves| self.strongest(moves, self.near_hz(line.hz))).map_or(0.0, |moved| moved.power);
         let small = line.power < largest * line.noise;
-        (small && line.power > ALONE * line.beside && moved <= PREDICTED * line.power).then_some(line)
+        let alone = line.power > ALONE * line.beside && moved <= PREDICTED * line.power;
+        (small && alone && self.steady(&line)).then_some(line)
     }
 
     /// The strongest line between two frequencies, if it stands out of the noise about it.
@@ -317,5 +345,20 @@ mod tests {
                 assert!((left / 14_980.0).sqrt() < 0.04, "{left}");
             }
         }
+    }
+
+    #[test]
+    fn closed_form_a_line_that_comes_and_goes_or_is_predicted_is_left() {
+        let valid = vec![true; 15_000];
+        let of = |k: u32| (TAU * 50.02e-3 * f64::from(k)).sin();
+        let louder = |rows: u32| -> Vec<f64> {
+            series(0.3, 50.02).iter().zip(0..).map(|(x, k)| x + if k < rows { 0.7 * of(k) } else { 0.0 }).collect()
+        };
+        assert_eq!(without_hum(&mut louder(0), &valid, None, 1e-3).len(), 1);
+        assert_eq!(without_hum(&mut louder(4000), &valid, None, 1e-3).len(), 0);
+        // twelve lines a hertz apart, none of which stands out of the others
+        let shakes = |k: u32| (0..12).map(|line| (TAU * (44.0 + f64::from(line)) * 1e-3 * f64::from(k)).sin()).sum();
+        let predicted: Vec<f64> = (0..15_000).map(shakes).collect();
+        assert_eq!(without_hum(&mut louder(0), &valid, Some(&predicted), 1e-3).len(), 0);
     }
 }

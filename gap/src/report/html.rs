@@ -38,7 +38,6 @@ fn signals(out: &mut String, diagnosis: &Diagnosis) {
     let [before, after] = &diagnosis.residuals;
     let record = &diagnosis.record;
     let (period_s, first_s) = (record.inputs.period_s, record.first_s);
-    let thin = |values: &[f64]| thinned(values, period_s, first_s, 1500);
     let marks: Vec<(f64, f64)> =
         diagnosis.spans.iter().map(|span| (first_s + span.from_s, first_s + span.to_s)).collect();
     let named = diagnosis.decision.as_ref().is_some_and(|decision| !decision.found.is_empty());
@@ -48,6 +47,7 @@ fn signals(out: &mut String, diagnosis: &Diagnosis) {
         let column = channel.signal.column();
         let (name, unit) = (column.name(), column.unit());
         let _ = write!(out, "<h2>{name} [{unit}]</h2>");
+        let thin = |values: &[f64]| thinned(values, period_s, first_s, 1500, |row| !channel.is_missing(row));
         let model = |residual: &[f64]| -> Vec<f64> {
             channel.values.iter().zip(residual).map(|(measured, residual)| measured - residual).collect()
         };

@@ -153,29 +153,42 @@ pub(super) fn label(tick: f64, logarithmic: bool) -> String {
 }
 
 /// The largest and the smallest of each stretch, so that nothing between two points is lost.
-pub(super) fn thinned(values: &[f64], period_s: f64, first_s: f64, stretches: usize) -> Vec<(f64, f64)> {
+pub(super) fn thinned(
+    values: &[f64],
+    period_s: f64,
+    first_s: f64,
+    stretches: usize,
+    there: impl Fn(usize) -> bool,
+) -> Vec<(f64, f64)> {
     let length = values.len().div_ceil(stretches).max(1);
-    if length == 1 {
-        return values.iter().enumerate().map(|(k, value)| (first_s + k as f64 * period_s, *value)).collect();
+    let mut points = Vec::new();
+    for start in (0..values.len()).step_by(length) {
+        let rows = (start..(start + length).min(values.len())).filter(|&row| there(row));
+        let ends = rows.fold(None, |ends: Option<[usize; 2]>, row| {
+            let [low, high] = ends.unwrap_or([row, row]);
+            let lower = if values[row] < values[low] { row } else { low };
+            Some([lower, if values[row] > values[high] { row } else { high }])
+        });
+        if let Some([low, high]) = ends {
+            let mut rows = vec![low.min(high), low.max(high)];
+            rows.dedup();
+            points.extend(rows.into_iter().map(|row| (first_s + row as f64 * period_s, values[row])));
+        }
     }
-    values
-        .chunks(length)
-        .enumerate()
-        .flat_map(|(index, chunk)| {
-            let time_s = first_s + (index * length) as f64 * period_s;
-            let (mut low, mut high) = (0, 0);
-            for (place, value) in chunk.iter().enumerate() {
-                low = if *value < chunk[low] { place } else { low };
-                high = if *value > chunk[high] { place } else { high };
-            }
-            [low.min(high), low.max(high)].map(|place| (time_s + place as f64 * period_s, chunk[place]))
-        })
-        .collect()
+    points
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{label, ticks};
+    use super::{label, thinned, ticks};
+
+    #[test]
+    fn closed_form_the_ends_of_stretches_are_drawn_and_missing_rows_are_not() {
+        let values = [1.0, 3.0, 2.0, 0.0, 5.0, 4.0];
+        let drawn = thinned(&values, 0.5, 10.0, 2, |row| row != 3);
+        assert_eq!(drawn, [(10.0, 1.0), (10.5, 3.0), (12.0, 5.0), (12.5, 4.0)]);
+        assert_eq!(thinned(&values, 1.0, 0.0, 6, |row| row != 3).len(), 5);
+    }
 
     #[test]
     fn closed_form_ticks_stand_at_round_values() {

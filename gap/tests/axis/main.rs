@@ -8,6 +8,7 @@
 )]
 
 mod arm;
+mod play;
 mod real;
 mod simulated;
 mod simulator;

@@ -85,7 +85,8 @@ pub struct Columns {
 pub struct Source {
     /// Its name in the header.
     pub name: String,
-    /// Its unit.
+    /// Its unit; `command` and auxiliary channels need none.
+    #[serde(default)]
     pub unit: String,
     /// Factor on its values, for units that have no name.
     #[serde(default = "one")]

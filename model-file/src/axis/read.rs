@@ -105,8 +105,11 @@ impl AxisModel {
         for (key, source, quantity) in sources {
             let Some(source) = source else { continue };
             if let Err(known) = quantity.size(&source.unit, self.motion, &self.effort_unit) {
-                let message = format!("has the unit \"{}\"; {known}", source.unit);
-                return Err((key.to_owned(), format!("`axis.columns.{key}` {message}")));
+                let has = match source.unit.as_str() {
+                    "" => "has no `unit`".to_owned(),
+                    unit => format!("has the unit \"{unit}\""),
+                };
+                return Err((key.to_owned(), format!("`axis.columns.{key}` {has}; {known}")));
             }
             if !(source.scale.is_finite() && source.scale != 0.0) {
                 return Err((key.to_owned(), format!("`axis.columns.{key}` has a `scale` of {}", source.scale)));

@@ -102,9 +102,9 @@ pub(in crate::axis) fn parameters(
         Shape::FrictionTaper => vec![amplitude("stiffness", unit(0))],
         Shape::Flexible => vec![amplitude("coefficient", unit(4))],
         Shape::Mode { .. } => vec![amplitude("inertia", unit(2))],
-        Shape::Backlash { .. } => vec![
-            amplitude("inertia_unloaded", unit(2)),
-            new("friction_unloaded", own[1], deviation(samples, 1), effort),
+        Shape::Backlash(play) => vec![
+            amplitude("inertia", unit(2)),
+            new("friction", play.slowing * own[0], play.slowing * deviation(samples, 0), effort),
         ],
         Shape::LoadGain { .. } => vec![amplitude("relative_per_unit", one())],
         Shape::Load { .. } | Shape::LoadFriction { .. } => {

@@ -50,9 +50,9 @@ impl Shape {
             Self::Lag => vec![m.derivative(&m.whole.apply(&m.needed))],
             Self::Flexible => vec![m.derivative(&m.derivative(&m.rest.apply(&m.a)))],
             Self::Mode { frequency_hz, damping } => vec![resonance::column(&m.a, m.period_s, frequency_hz, damping)],
-            Self::Backlash { width } => {
-                let p = play_state(&m.q, width);
-                vec![by(&|i| (1.0 - p[i].abs()) * m.a[i]), by(&|i| (1.0 - p[i].abs()) * m.s[i])]
+            Self::Backlash(play) => {
+                let push = play.push(m);
+                vec![by(&|i| push[i] - m.a[i] - play.slowing * m.s[i])]
             }
             Self::Load { channel } => vec![m.auxiliary[channel].1.clone()],
             Self::LoadFriction { channel } => vec![by(&|i| m.s[i] * m.auxiliary[channel].1[i])],

@@ -10,6 +10,8 @@
 mod drawn;
 mod rules;
 
+use super::play::Play;
+
 /// What an effect looks like; numbers are its shape parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Shape {
@@ -68,9 +70,7 @@ pub(super) enum Shape {
         frequency_hz: f64,
         damping: f64,
     },
-    Backlash {
-        width: f64,
-    },
+    Backlash(Play),
     Load {
         channel: usize,
     },
@@ -119,7 +119,7 @@ impl Shape {
             Self::TorqueCurve => "torque_curve",
             Self::Lag => "motor_lag",
             Self::Flexible | Self::Mode { .. } => "flexible_mode",
-            Self::Backlash { .. } => "backlash",
+            Self::Backlash(_) => "backlash",
             Self::Load { .. } => "external_load",
             Self::LoadFriction { .. } => "load_friction",
             Self::LoadGain { .. } => "load_gain",
@@ -158,7 +158,7 @@ impl Shape {
             | Self::TorqueCurve
             | Self::Lag
             | Self::LoadGain { .. } => "servo",
-            Self::Inertia | Self::Flexible | Self::Mode { .. } | Self::Backlash { .. } => "structure",
+            Self::Inertia | Self::Flexible | Self::Mode { .. } | Self::Backlash(_) => "structure",
             Self::Scale | Self::BiasDrift { .. } => "measurement",
         }
     }
@@ -176,7 +176,7 @@ impl Shape {
             | Self::LoadRipple { wave_number, .. }
             | Self::Ripple { wave_number }
             | Self::MotorRipple { wave_number } => vec![("wave_number", wave_number)],
-            Self::Hysteresis { width } | Self::Backlash { width } => vec![("width", width)],
+            Self::Hysteresis { width } | Self::Backlash(Play { width, .. }) => vec![("width", width)],
             Self::Mode { frequency_hz, damping } => vec![("frequency_hz", frequency_hz), ("damping_ratio", damping)],
             _ => Vec::new(),
         }
@@ -198,7 +198,7 @@ impl Shape {
             | Self::MotorRipple { wave_number: place }
             | Self::Hysteresis { width: place }
             | Self::Mode { frequency_hz: place, .. }
-            | Self::Backlash { width: place } => *place = number,
+            | Self::Backlash(Play { width: place, .. }) => *place = number,
             _ => {}
         }
         other

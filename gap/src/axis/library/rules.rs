@@ -42,7 +42,7 @@ impl Shape {
             | Self::Lag
             | Self::Flexible
             | Self::Mode { .. }
-            | Self::Backlash { .. } => 1e-4,
+            | Self::Backlash(_) => 1e-4,
             Self::Spring
             | Self::FrictionTaper
             | Self::PositionFriction { .. }
@@ -85,9 +85,9 @@ impl Shape {
             | Self::Lag
             | Self::RateDelay
             | Self::Mode { .. }
+            | Self::Backlash(_)
             | Self::Flexible => amplitudes[0] > 0.0,
             Self::Presliding { .. } => amplitudes[0] > 0.0 && amplitudes[0] < 1.5 * level.abs(),
-            Self::Backlash { .. } => amplitudes[0] < 0.0 && amplitudes[1] < 0.0,
             Self::Scale => amplitudes[0] > LEAST_SCALE,
             _ => true,
         }
