@@ -14,7 +14,8 @@
 //!
 //! What the logged rate does from row to row says how large s may be: some of that is motion. A residual r says how
 //! large it is: `-2 ln L = |x|^2 + sum ln(1 + |a'|^2)`, x what comes out of r. Of the sizes that are as likely as the
-//! likeliest one, the largest is taken.
+//! likeliest one, the largest is taken. What the rate does between rows, beside the line, may be as large: it is added
+//! where it makes the residual likelier.
 
 use rayon::prelude::*;
 
@@ -111,19 +112,36 @@ impl Slips {
             return none.with(&released, 1.0);
         }
         let residual = filter(residual);
-        let mut shown = turned.shown(record.channels.len(), filter);
-        for (block, (_, values)) in turned.blocks.iter().zip(&mut shown) {
-            let sigma = record.rate_noise.of_mean(block.len());
-            for value in values.iter_mut() {
-                *value *= sigma;
-            }
+        let shown = turned.shown(record.channels.len(), filter);
+        let noise: Vec<f64> = turned.blocks.iter().map(|block| record.rate_noise.of_mean(block.len())).collect();
+        let likeliest = |sigmas: &[f64]| none.clone().likeliest(&shown, sigmas, &released, &residual);
+        let (unlikely, slips) = likeliest(&noise);
+        let between = bent(record, &turned.blocks);
+        if noise.iter().zip(&between).all(|(noise, between)| between < noise) {
+            return slips;
         }
+        let both: Vec<f64> = noise.iter().zip(&between).map(|(noise, between)| noise.hypot(*between)).collect();
+        let (unlikely_bent, bent) = likeliest(&both);
+        if unlikely_bent + ALIKE < unlikely { bent } else { slips }
+    }
+
+    /// Blocks whose rates are off by so much, of the size that a residual speaks for.
+    fn likeliest(
+        self,
+        shown: &[(usize, Vec<f64>)],
+        sigmas: &[f64],
+        released: &[(usize, Vec<f64>)],
+        residual: &[f64],
+    ) -> (f64, Self) {
+        let moved = shown.iter().zip(sigmas);
+        let moved: Vec<(usize, Vec<f64>)> =
+            moved.map(|((first, own), sigma)| (*first, own.iter().map(|value| sigma * value).collect())).collect();
         let mut tried: Vec<(f64, Self)> = Vec::new();
         let mut least = f64::MAX;
         for size in std::iter::successors(Some(1.0), |size| Some(SMALLER * size)).take(SIZES) {
             // the longer ones last: what is narrow stays so
-            let slips = none.clone().with(&shown, size).with(&released, 1.0);
-            let unlikely = slips.unlikely(&residual);
+            let slips = self.clone().with(&moved, size).with(released, 1.0);
+            let unlikely = slips.unlikely(residual);
             least = least.min(unlikely);
             tried.push((unlikely, slips));
             if unlikely > least + 2.0 * ALIKE {
@@ -131,7 +149,7 @@ impl Slips {
             }
         }
         let alike = tried.into_iter().find(|(unlikely, _)| *unlikely <= least + ALIKE);
-        alike.map(|(_, slips)| slips).unwrap_or_default()
+        alike.unwrap_or_default()
     }
 
     /// `-2 ln L` of a residual, up to a constant.
@@ -164,6 +182,18 @@ impl Slips {
         }
         self
     }
+}
+
+/// How far the rate may be off the line between rows, in each block: an eighth of its second differences, less those of noise.
+fn bent(record: &Record, blocks: &[Block]) -> Vec<f64> {
+    let rate = &record.inputs.rate_radps;
+    let of_noise = 6.0 * record.rate_noise.rms_radps.powi(2);
+    let of = |block: &Block| {
+        let rows = block.start.max(1)..(block.end + 1).min(rate.len() - 1);
+        let squares = rows.clone().map(|k| (rate[k - 1] - 2.0 * rate[k] + rate[k + 1]).powi(2));
+        0.125 * (squares.sum::<f64>() / rows.len().max(1) as f64 - of_noise).max(0.0).sqrt()
+    };
+    blocks.iter().map(of).collect()
 }
 
 /// Samples over the noise without the ends that are nothing, and where they begin.
