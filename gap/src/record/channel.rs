@@ -37,6 +37,10 @@ const HELD: usize = 5;
 const BEGINNING_S: f64 = 0.02;
 const FEWEST: usize = 4;
 
+/// Rows that show noise, and share of a channel's samples that must end such a run.
+const SIDE_BY_SIDE: usize = 4;
+const SPARSE: f64 = 0.1;
+
 /// What a line through the beginning may leave, over the noise.
 const BENT: f64 = 2.0;
 
@@ -73,6 +77,16 @@ impl Channel {
     /// Whether the log has no sample there.
     pub(crate) fn is_missing(&self, row: usize) -> bool {
         !self.valid[row] && self.values[row] == 0.0
+    }
+
+    /// What of it, if too few of its samples stand side by side to show their noise.
+    pub(super) fn told_sparse(&self) -> Option<String> {
+        let side_by_side = self.valid.windows(SIDE_BY_SIDE).filter(|few| few.iter().all(|valid| *valid)).count();
+        let samples = self.valid.iter().filter(|valid| **valid).count();
+        (side_by_side as f64 <= SPARSE * samples as f64).then(|| {
+            let (name, rows) = (self.signal.column().name(), self.valid.len());
+            format!("{name} has {samples} samples in {rows} rows, hardly any {SIDE_BY_SIDE} of them in a row")
+        })
     }
 
     /// Largest size of a value that is held for a few rows.
@@ -124,6 +138,17 @@ impl Channel {
 #[cfg(test)]
 mod tests {
     use super::{Channel, Signal};
+
+    #[test]
+    fn closed_form_every_other_row_is_sparse_and_a_few_gaps_are_not() {
+        let of = |every: usize| -> Channel {
+            let value = |k: usize| if k.is_multiple_of(every) { f64::NAN } else { 1.0 };
+            Channel::new(Signal::GimbalAngle, (0..1000).map(value).collect())
+        };
+        assert!(of(2).told_sparse().is_some_and(|told| told.contains("500 samples in 1000 rows")));
+        assert!(of(4).told_sparse().is_some());
+        assert!(of(20).told_sparse().is_none());
+    }
 
     #[test]
     fn closed_form_a_peak_is_held_for_some_rows_that_count() {

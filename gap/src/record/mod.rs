@@ -120,6 +120,17 @@ impl Record {
                 continue;
             }
             let mut channel = Channel::new(signal, grid.place(values));
+            match channel.told_sparse() {
+                Some(told) if signal == Signal::GyroAngle => {
+                    faults.push(format!("{told}: bring all columns to its rate"));
+                    continue;
+                }
+                Some(told) => {
+                    notes.push(format!("{told}: it is not used"));
+                    continue;
+                }
+                None => {}
+            }
             notes.extend(channel.without_spikes());
             channels.push(channel);
         }
