@@ -61,6 +61,8 @@ pub struct Channel {
     pub values: Vec<f64>,
     /// Whether a sample counts.
     pub valid: Vec<bool>,
+    /// Lines of hum that were taken out [Hz].
+    pub(super) hums_hz: Vec<f64>,
 }
 
 impl Channel {
@@ -71,7 +73,7 @@ impl Channel {
                 *value = 0.0;
             }
         }
-        Self { signal, values, valid }
+        Self { signal, values, valid, hums_hz: Vec::new() }
     }
 
     /// Whether the log has no sample there.

@@ -32,9 +32,11 @@ const WIDE: f64 = 4.0;
 const AROUND_HZ: f64 = 4.0;
 /// What a line must stand out by, beyond chance [nats].
 const STANDS_OUT: f64 = 12.0;
-/// Power over that of the strongest line beside it; and of what is predicted at its place, over its own, at most.
+/// Power over that of the strongest line beside it; and of a line that is predicted at its place, over its own, at most.
 const ALONE: f64 = 2.5;
 const PREDICTED: f64 = 0.1;
+/// The same of all that is predicted there, of which parameters a little off leave a share.
+const MISJUDGED: f64 = 100.0;
 /// Amplitude at most, over the noise about it, in a row; a line of an input that is larger over the noise of the upper half of
 /// the band is vibration, unless the outputs tell otherwise.
 const LARGEST: f64 = 3.0;
@@ -72,7 +74,7 @@ impl Record {
             let mut inputs = self.inputs.clone();
             let own = driven(&mut inputs, column);
             let all = vec![true; own.len()];
-            let found = without_hum(own, &all, None, self.inputs.period_s);
+            let found = without_hum(own, &all, None, &[], self.inputs.period_s);
             if found.is_empty() {
                 continue;
             }
@@ -112,12 +114,14 @@ impl Record {
         for (place, channel) in self.channels.iter().enumerate() {
             let predicted = crate::fit::predicted(channel.signal, prediction);
             let mut left: Vec<f64> = channel.values.iter().zip(predicted).map(|(value, own)| value - own).collect();
-            let found = without_hum(&mut left, &channel.valid, Some(predicted), self.inputs.period_s);
+            let (moves, known_hz) = (Some(predicted), &channel.hums_hz[..]);
+            let found = without_hum(&mut left, &channel.valid, moves, known_hz, self.inputs.period_s);
             if found.is_empty() {
                 continue;
             }
             let hushed = hushed.get_or_insert_with(|| self.clone());
             hushed.channels[place].values = left.iter().zip(predicted).map(|(left, own)| left + own).collect();
+            hushed.channels[place].hums_hz.extend(found.iter().map(|hum| hum.hz));
             hushed.notes.extend(found.iter().map(|hum| hum.told(channel.signal.column())));
         }
         hushed
@@ -136,8 +140,14 @@ fn driven(inputs: &mut Inputs, column: Column) -> &mut Vec<f64> {
 }
 
 /// Takes hum out of a series, and tells its lines. Rows that do not count stay as they are. A line that what is predicted of
-/// the series has too is the platform's.
-pub(super) fn without_hum(values: &mut [f64], valid: &[bool], predicted: Option<&[f64]>, period_s: f64) -> Vec<Hum> {
+/// the series has too is the platform's; what is left of one that was known to be hum need not be as it is all along.
+pub(super) fn without_hum(
+    values: &mut [f64],
+    valid: &[bool],
+    predicted: Option<&[f64]>,
+    known_hz: &[f64],
+    period_s: f64,
+) -> Vec<Hum> {
     if values.len() < LEAST_ROWS {
         return Vec::new();
     }
@@ -153,7 +163,8 @@ pub(super) fn without_hum(values: &mut [f64], valid: &[bool], predicted: Option<
             if between_hz[1] * period_s > HIGHEST {
                 continue;
             }
-            let Some(line) = series.hum(&powers, moves.as_deref(), between_hz) else { continue };
+            let known = known_hz.iter().any(|own| (between_hz[0]..=between_hz[1]).contains(own));
+            let Some(line) = series.hum(&powers, moves.as_deref(), between_hz, known) else { continue };
             found.push(series.take_out(line.hz, series.floor(&powers)));
             let Some(without) = series.powers(&series.values) else { break };
             powers = without;
@@ -231,17 +242,19 @@ impl Series {
     }
 
     /// The strongest line between two frequencies, if it may be hum: no larger than that, none of many side by side, as a motion
-    /// has that comes again and again, none where what moves has as much, and the same all along.
-    fn hum(&self, powers: &[f64], moves: Option<&[f64]>, between_hz: [f64; 2]) -> Option<Line> {
+    /// has that comes again and again, none that what moves has, too, or may have left, and the same all along.
+    fn hum(&self, powers: &[f64], moves: Option<&[f64]>, between_hz: [f64; 2], known: bool) -> Option<Line> {
         // (A sum w / 2)^2 over sigma^2 sum w^2
         let sum: f64 = self.window.iter().sum();
         let largest = (0.5 * LARGEST * sum).powi(2) / self.window.iter().map(|w| w * w).sum::<f64>();
         let line = self.line(powers, between_hz)?;
-        let moved =
-            moves.and_then(|moves| self.strongest(moves, self.near_hz(line.hz))).map_or(0.0, |moved| moved.power);
+        let near_hz = self.near_hz(line.hz);
+        let moved = moves.and_then(|moves| self.line(moves, near_hz)).map_or(0.0, |moved| moved.power);
+        let moved_in_all = moves.and_then(|moves| self.strongest(moves, near_hz)).map_or(0.0, |moved| moved.power);
         let small = line.power < largest * line.noise;
-        let alone = line.power > ALONE * line.beside && moved <= PREDICTED * line.power;
-        (small && alone && self.steady(&line)).then_some(line)
+        let moves = moved > PREDICTED * line.power || !known && moved_in_all > MISJUDGED * line.power;
+        let alone = line.power > ALONE * line.beside && !moves;
+        (small && alone && (known || self.steady(&line))).then_some(line)
     }
 
     /// The strongest line between two frequencies, if it stands out of the noise about it.
@@ -331,7 +344,7 @@ mod tests {
             [(0.3, 50.02, 1), (0.5, 401.1, 1), (0.3, 149.95, 1), (0.0, 50.0, 0), (0.5, 55.0, 0), (8.0, 50.0, 0)]
         {
             let mut values = series(amplitude, hz);
-            let found = without_hum(&mut values, &valid, None, 1e-3);
+            let found = without_hum(&mut values, &valid, None, &[], 1e-3);
             assert_eq!(found.len(), lines, "{amplitude} at {hz}: {found:?}");
             for hum in found {
                 assert!((hum.hz - hz).abs() < 0.02 && (hum.amplitude - amplitude).abs() < 0.04, "{hum:?}");
@@ -354,11 +367,12 @@ mod tests {
         let louder = |rows: u32| -> Vec<f64> {
             series(0.3, 50.02).iter().zip(0..).map(|(x, k)| x + if k < rows { 0.7 * of(k) } else { 0.0 }).collect()
         };
-        assert_eq!(without_hum(&mut louder(0), &valid, None, 1e-3).len(), 1);
-        assert_eq!(without_hum(&mut louder(4000), &valid, None, 1e-3).len(), 0);
+        assert_eq!(without_hum(&mut louder(0), &valid, None, &[], 1e-3).len(), 1);
+        assert_eq!(without_hum(&mut louder(4000), &valid, None, &[], 1e-3).len(), 0);
         // twelve lines a hertz apart, none of which stands out of the others
-        let shakes = |k: u32| (0..12).map(|line| (TAU * (44.0 + f64::from(line)) * 1e-3 * f64::from(k)).sin()).sum();
+        let shakes =
+            |k: u32| (0..12).map(|line| 3.0 * (TAU * (44.0 + f64::from(line)) * 1e-3 * f64::from(k)).sin()).sum();
         let predicted: Vec<f64> = (0..15_000).map(shakes).collect();
-        assert_eq!(without_hum(&mut louder(0), &valid, Some(&predicted), 1e-3).len(), 0);
+        assert_eq!(without_hum(&mut louder(0), &valid, Some(&predicted), &[], 1e-3).len(), 0);
     }
 }

@@ -42,6 +42,7 @@ impl Record {
             signal: channel.signal,
             values: cut(&channel.values),
             valid: channel.valid[rows.clone()].to_vec(),
+            hums_hz: channel.hums_hz.clone(),
         };
         let mut notes = self.notes.clone();
         notes
