@@ -36,3 +36,17 @@ impl Beside {
         speaks.max(0.0).powi(2) / kept.max(1e-300)
     }
 }
+
+/// Those of what was tried that take most, no two of which have a number nearly the same: each with what it takes.
+pub(super) fn apart<T>(mut all: Vec<(f64, T)>, most: usize, ratio: f64, number: impl Fn(&T) -> f64) -> Vec<T> {
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut offered: Vec<T> = Vec::new();
+    for (gain, one) in all {
+        let own = number(&one);
+        let new = offered.iter().map(&number).all(|other| (own / other).max(other / own) > ratio);
+        if gain > 0.0 && new && offered.len() < most {
+            offered.push(one);
+        }
+    }
+    offered
+}

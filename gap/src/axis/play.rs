@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::beside::Beside;
+use super::beside::{Beside, apart};
 use super::library::Shape;
 use super::motion::Motion;
 use super::refine::golden;
@@ -81,12 +81,13 @@ impl Play {
     }
 
     /// Whether its load is more than friction: of a light one with much of it, a play is what friction does at a reversal.
-    pub(super) fn is_likely(&self, m: &Motion) -> bool {
+    fn is_likely(&self, m: &Motion) -> bool {
         self.slowing * m.nominal[0] <= MOST_SLOWED * m.nominal[2]
     }
 
-    /// The play about this one that costs least, its parameters one after the other, twice.
-    pub(super) fn refined(self, cost: impl Fn(Self) -> f64) -> Self {
+    /// The likely play about this one that costs least, its parameters one after the other, twice.
+    pub(super) fn refined(self, m: &Motion, cost: impl Fn(Self) -> f64) -> Self {
+        let cost = |play: Self| if play.is_likely(m) { cost(play) } else { f64::MAX };
         self.refined_once(&cost).refined_once(&cost)
     }
 
@@ -113,31 +114,19 @@ pub(super) fn plays(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<S
         let column = Shape::Backlash(*play).on_grid(motion).remove(0);
         levels.iter().map(|level| level.gain_of(&column)).collect::<Vec<f64>>()
     };
+    let width = |play: &Play| play.width;
     let all = tried(motion);
     let gains: Vec<Vec<f64>> = all.par_iter().map(gains).collect();
     let scanned = (0..levels.len()).flat_map(|level| {
         let of_level = all.iter().zip(&gains).map(|(play, gains)| (gains[level], *play)).collect();
-        apart(of_level).into_iter().map(move |play| (level, play))
+        apart(of_level, OFFERED, APART, width).into_iter().map(move |play| (level, play))
     });
     let nearer = |(level, play): (usize, Play)| {
-        let nearest = levels[level..].iter().fold(play, |play, level| play.refined(|play| -level.gain(play)));
-        (sharpest.gain(nearest), nearest)
+        let nearest = levels[level..].iter().fold(play, |play, level| play.refined(motion, |play| -level.gain(play)));
+        (if nearest.is_likely(motion) { sharpest.gain(nearest) } else { 0.0 }, nearest)
     };
     let refined: Vec<(f64, Play)> = scanned.collect::<Vec<_>>().into_par_iter().map(nearer).collect();
-    apart(refined).into_iter().map(Shape::Backlash).collect()
-}
-
-/// Those that take most, no two of a width nearly the same.
-fn apart(mut all: Vec<(f64, Play)>) -> Vec<Play> {
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut offered: Vec<Play> = Vec::new();
-    for (gain, play) in all {
-        let new = offered.iter().all(|other| (play.width / other.width).max(other.width / play.width) > APART);
-        if gain > 0.0 && new && offered.len() < OFFERED {
-            offered.push(play);
-        }
-    }
-    offered
+    apart(refined, OFFERED, APART, width).into_iter().map(Shape::Backlash).collect()
 }
 
 /// What is scanned.
@@ -171,9 +160,6 @@ impl<'a> Level<'a> {
     }
 
     fn gain(&self, play: Play) -> f64 {
-        if !play.is_likely(self.motion) {
-            return 0.0;
-        }
         self.gain_of(&Shape::Backlash(play).on_grid(self.motion)[0])
     }
 

@@ -51,9 +51,9 @@ impl Balance {
                 grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
             };
             let best = match shape {
-                Shape::Backlash(play) => Shape::Backlash(play.refined(|play| {
-                    if play.is_likely(&self.motion) { cost(&Shape::Backlash(play)) } else { f64::MAX }
-                })),
+                Shape::Backlash(play) => {
+                    Shape::Backlash(play.refined(&self.motion, |play| cost(&Shape::Backlash(play))))
+                }
                 _ => shape.with(golden(from, to, |number| cost(&shape.with(number)))),
             };
             // a turn has a whole number of waves, but of what turns behind a gear

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::beside::Beside;
+use super::beside::{Beside, apart};
 use super::library::Shape;
 use super::motion::Motion;
 
@@ -51,17 +51,8 @@ pub(super) fn modes(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<S
         .take_while(|hz| *hz < highest_hz)
         .flat_map(|frequency_hz| DAMPINGS.map(|damping| Shape::Mode { frequency_hz, damping }))
         .collect();
-    let mut all: Vec<(f64, Shape)> = all.into_par_iter().map(gain).collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut offered: Vec<Shape> = Vec::new();
-    for (gain, shape) in all {
-        let hz = |shape: &Shape| shape.numbers()[0].1;
-        let new = offered.iter().all(|other| (hz(&shape) / hz(other)).max(hz(other) / hz(&shape)) > APART);
-        if gain > 0.0 && new && offered.len() < OFFERED {
-            offered.push(shape);
-        }
-    }
-    offered
+    let all: Vec<(f64, Shape)> = all.into_par_iter().map(gain).collect();
+    apart(all, OFFERED, APART, |shape| shape.numbers()[0].1)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use gimbal_model_file::ModelFile;
 
+use super::blocks::{Turned, Turning};
 use super::draft::Draft;
 use super::path::Path;
 use super::plans::Plans;
@@ -13,7 +14,7 @@ use super::rest::{Raw, rest};
 use super::ripple;
 use super::shapes::{Impulse, Shapes};
 use super::signals::{Kept, Signals, peak, residual, scaled, valid};
-use super::slip::{Slips, Turned, Turning};
+use super::slip::Slips;
 use super::turning::{at_once, impulse, mostly, remembered, turning_noise, turns};
 use super::whiten::Loop;
 use super::{Columns, Fit, Problem, Whitener};

@@ -1,5 +1,6 @@
 //! Fitting: whitened residuals, sensitivities, normal equations, and the search over effects.
 
+mod blocks;
 mod ceiling;
 mod draft;
 mod extension;

@@ -9,13 +9,12 @@
 //! input is in what the prediction leaves of them. Where they tell nothing, what is larger than the sensor's noise is
 //! vibration.
 
-use std::f64::consts::{LN_2, TAU};
-
 use gimbal_log::Column;
 
+use super::series::{Line, STANDS_OUT, Series, power};
 use super::{RateNoise, Record, filled};
 use crate::simulate::{Inputs, Physics, Prediction};
-use crate::window::{hann, spectrum};
+use crate::window::hann;
 
 /// Frequencies of supplies, and how far one may be off [Hz], [1].
 const SUPPLIES: [(f64, f64); 3] = [(50.0, 0.004), (60.0, 0.004), (400.0, 0.02)];
@@ -25,13 +24,6 @@ const MULTIPLES: [f64; 3] = [1.0, 2.0, 3.0];
 const HIGHEST: f64 = 0.49;
 /// Fewest rows in which a line can be told.
 const LEAST_ROWS: usize = 2048;
-/// Lines of the transform over one of the log's length.
-const FINER: usize = 4;
-/// Lines of the log's length that a line takes under the window, and about it those that show the noise there [Hz].
-const WIDE: f64 = 4.0;
-const AROUND_HZ: f64 = 4.0;
-/// What a line must stand out by, beyond chance [nats].
-const STANDS_OUT: f64 = 12.0;
 /// Power over that of the strongest line beside it; and of a line that is predicted at its place, over its own, at most.
 const ALONE: f64 = 2.5;
 const PREDICTED: f64 = 0.1;
@@ -176,33 +168,11 @@ pub(super) fn without_hum(
     found
 }
 
-/// A series without gaps under a window.
-struct Series {
-    values: Vec<f64>,
-    window: Vec<f64>,
-    period_s: f64,
-}
-
 impl Series {
-    /// Amplitudes of sine and cosine of a frequency, under a window that begins at a row.
-    fn amplitudes(&self, hz: f64, window: &[f64], from: usize) -> [f64; 2] {
-        let weight = 0.5 * window.iter().sum::<f64>();
-        let rows = self.values[from..].iter().zip(window).zip(from..);
-        rows.fold([0.0; 2], |[sine, cosine], ((value, window), row)| {
-            let (sin, cos) = self.wave(hz, row);
-            [sine + window * value * sin / weight, cosine + window * value * cos / weight]
-        })
-    }
-
-    fn wave(&self, hz: f64, row: usize) -> (f64, f64) {
-        (TAU * hz * row as f64 * self.period_s).sin_cos()
-    }
-
     /// Whether a line is as it is in each part of the log: the supply hums on, a vehicle shakes as it drives.
     fn steady(&self, line: &Line) -> bool {
         let all = self.amplitudes(line.hz, &self.window, 0);
         let part = hann(self.values.len() / PARTS);
-        let power = |window: &[f64]| window.iter().map(|w| w * w).sum::<f64>();
         let deviation = 2.0 * (line.noise / power(&self.window) * power(&part)).sqrt() / part.iter().sum::<f64>();
         let within = UNSTEADY * all[0].hypot(all[1]) + LEAST_OFF * deviation;
         (0..PARTS).all(|place| {
@@ -222,31 +192,12 @@ impl Series {
         Hum { hz, amplitude, over_noise: amplitude / noise }
     }
 
-    /// Power of values over frequency, under the window.
-    fn powers(&self, values: &[f64]) -> Option<Vec<f64>> {
-        let sum: f64 = self.window.iter().sum();
-        let mean = values.iter().zip(&self.window).map(|(value, window)| value * window).sum::<f64>() / sum;
-        let tapered: Vec<f64> =
-            values.iter().zip(&self.window).map(|(value, window)| window * (value - mean)).collect();
-        spectrum(&tapered, self.length())
-    }
-
-    /// Rms of a row, were all noise as that of the upper half of the band.
-    fn floor(&self, powers: &[f64]) -> f64 {
-        (noise(&mut powers[powers.len() / 2..].to_vec()) / self.window.iter().map(|w| w * w).sum::<f64>()).sqrt()
-    }
-
-    /// Rows of a transform.
-    fn length(&self) -> usize {
-        FINER * self.values.len().next_power_of_two()
-    }
-
     /// The strongest line between two frequencies, if it may be hum: no larger than that, none of many side by side, as a motion
     /// has that comes again and again, none that what moves has, too, or may have left, and the same all along.
     fn hum(&self, powers: &[f64], moves: Option<&[f64]>, between_hz: [f64; 2], known: bool) -> Option<Line> {
         // (A sum w / 2)^2 over sigma^2 sum w^2
         let sum: f64 = self.window.iter().sum();
-        let largest = (0.5 * LARGEST * sum).powi(2) / self.window.iter().map(|w| w * w).sum::<f64>();
+        let largest = (0.5 * LARGEST * sum).powi(2) / power(&self.window);
         let line = self.line(powers, between_hz)?;
         let near_hz = self.near_hz(line.hz);
         let moved = moves.and_then(|moves| self.line(moves, near_hz)).map_or(0.0, |moved| moved.power);
@@ -256,65 +207,6 @@ impl Series {
         let alone = line.power > ALONE * line.beside && !moves;
         (small && alone && (known || self.steady(&line))).then_some(line)
     }
-
-    /// The strongest line between two frequencies, if it stands out of the noise about it.
-    fn line(&self, powers: &[f64], between_hz: [f64; 2]) -> Option<Line> {
-        let line = self.strongest(powers, between_hz)?;
-        let independent = ((between_hz[1] - between_hz[0]) * self.values.len() as f64 * self.period_s).max(1.0);
-        (line.power / line.noise - independent.ln() > STANDS_OUT).then_some(line)
-    }
-
-    /// The strongest line between two frequencies.
-    fn strongest(&self, powers: &[f64], [from_hz, to_hz]: [f64; 2]) -> Option<Line> {
-        let step_hz = 1.0 / (self.length() as f64 * self.period_s);
-        let at = |place: usize| place as f64 * step_hz;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a line")]
-        let places = |from_hz: f64, to_hz: f64| {
-            (from_hz / step_hz).max(1.0) as usize..((to_hz / step_hz) as usize + 2).min(powers.len())
-        };
-        let inside = |place: &usize| (from_hz..=to_hz).contains(&at(*place)) && place + 1 < powers.len();
-        let within = places(from_hz, to_hz).filter(inside);
-        let best = within.max_by(|&a, &b| powers[a].total_cmp(&powers[b]))?;
-        let power = powers[best];
-        // the top of the parabola through the logarithms about it
-        let [before, own, after] = [best - 1, best, best + 1].map(|place| powers[place].max(1e-300).ln());
-        let off = 0.5 * (before - after) / (before - 2.0 * own + after).min(-1e-12);
-        let hz = at(best) + off.clamp(-0.5, 0.5) * step_hz;
-        let aside = |place: &usize| (self.wide_hz()..AROUND_HZ).contains(&(at(*place) - hz).abs());
-        let mut others: Vec<f64> =
-            places(hz - AROUND_HZ, hz + AROUND_HZ).filter(aside).map(|place| powers[place]).collect();
-        if others.is_empty() {
-            return None;
-        }
-        let beside = others.iter().copied().fold(0.0, f64::max);
-        let noise = noise(&mut others);
-        Some(Line { hz, power, noise, beside })
-    }
-
-    /// What a line takes of the transform, and no other may.
-    fn wide_hz(&self) -> f64 {
-        WIDE / (self.values.len() as f64 * self.period_s)
-    }
-
-    /// Where a line is looked for again.
-    fn near_hz(&self, hz: f64) -> [f64; 2] {
-        [hz - 0.5 * self.wide_hz(), hz + 0.5 * self.wide_hz()]
-    }
-}
-
-/// Mean power of noise by its median: that of a chi square of two degrees.
-fn noise(powers: &mut [f64]) -> f64 {
-    let middle = powers.len() / 2;
-    (*powers.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2).max(1e-300)
-}
-
-/// A line of a transform.
-struct Line {
-    hz: f64,
-    power: f64,
-    /// Power of noise about it, and of the strongest line there.
-    noise: f64,
-    beside: f64,
 }
 
 #[cfg(test)]

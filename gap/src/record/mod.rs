@@ -9,6 +9,7 @@ mod part;
 mod plateau;
 mod quiet;
 mod rough;
+mod series;
 mod spikes;
 mod stuck;
 
@@ -120,16 +121,13 @@ impl Record {
                 continue;
             }
             let mut channel = Channel::new(signal, grid.place(values));
-            match channel.told_sparse() {
-                Some(told) if signal == Signal::GyroAngle => {
+            if let Some(told) = channel.told_sparse() {
+                if signal == Signal::GyroAngle {
                     faults.push(format!("{told}: bring all columns to its rate"));
-                    continue;
-                }
-                Some(told) => {
+                } else {
                     notes.push(format!("{told}: it is not used"));
-                    continue;
                 }
-                None => {}
+                continue;
             }
             notes.extend(channel.without_spikes());
             channels.push(channel);
