@@ -12,7 +12,7 @@ use crate::record::Record;
 use crate::settle::{Settled, settled};
 
 /// What counts as less, in logarithms of an rms a channel.
-const LESS: f64 = 0.05;
+const LESS: f64 = 0.1;
 
 /// Whether the mistake explains a log better than the library does: nothing is wrong with the undone log and it leaves no
 /// more, or it leaves less.

@@ -20,6 +20,11 @@ pub(crate) const RARE_SHIFT: f64 = 5.0;
 const RARE_BESIDE: f64 = 4.0;
 /// A parameter at the end of its range [nats].
 const BOUND_HIT: f64 = 20.0;
+/// From this many times beyond its range on a shape is no realistic one: it is ruled out.
+const FAR_BEYOND: f64 = 10.0;
+/// How far the noise of the logged rate goes in a row, times this: what builds up within it may be what friction makes of that
+/// noise.
+const BLURRED: f64 = 15.0;
 /// Share of its least realistic value below which a size hits the end of its range.
 const FAR_BELOW: f64 = 0.03;
 /// A nominal parameter is an effect from this many tolerances on.
@@ -233,12 +238,16 @@ fn alone(search: &Search, fit: &Fit) -> f64 {
 
 /// What speaks against a set: an effect of no size, a shape beyond its range, a parameter inside its tolerance.
 fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: &Tolerance) -> f64 {
+    let record = problem.record;
+    let shortest_rad = BLURRED * record.rate_noise.rms_radps * record.inputs.period_s;
     let of = |(place, &index): (usize, &usize)| {
         let candidate = &problem.candidates[index];
         let (values, errors) = (&fit.values[place], &fit.errors[place]);
         let idle = if fit.is_idle(place) && !helps(search, fit, place) { NEVER } else { 0.0 };
         idle + if candidate.effect == "cable_hysteresis" && fit.effects.contains(&"presliding") {
             beside_presliding(at_a_bound(candidate.effect, values, errors))
+        } else if candidate.effect == "presliding" && values[0] < shortest_rad {
+            NEVER
         } else if candidate.releases.is_empty() {
             at_a_bound(candidate.effect, values, errors)
         } else if beyond(problem, tolerance, candidate.effect, values, errors) {
@@ -274,8 +283,8 @@ fn helps(search: &Search, fit: &Fit, place: usize) -> bool {
 pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
     let Some(effect) = Effect::from_name(effect) else { return 0.0 };
     let shapes = effect.parameters().iter().zip(values.iter().zip(errors)).skip(effect.sizes());
-    let outside = |(parameter, (value, error)): (&Parameter, (&f64, &f64))| {
-        let factor = (2.0 * error / value.abs().max(1e-30)).min(2.0).exp();
+    let outside = |(parameter, (value, error)): (&Parameter, (&f64, &f64)), times: f64| {
+        let factor = times * (2.0 * error / value.abs().max(1e-30)).min(2.0).exp();
         parameter.bound != Bound::Any && (value * factor < parameter.low || value / factor > parameter.high)
     };
     let sizes = effect.parameters().iter().zip(values.iter().zip(errors)).take(effect.sizes());
@@ -283,7 +292,13 @@ pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
         let unknown = *value > parameter.high && 2.0 * error > *value;
         parameter.bound == Bound::NotNegative && (*value < FAR_BELOW * parameter.low || unknown)
     };
-    if shapes.into_iter().any(outside) || sizes.into_iter().any(too_small_or_unknown) { BOUND_HIT } else { 0.0 }
+    if shapes.clone().any(|shape| outside(shape, FAR_BEYOND)) {
+        NEVER
+    } else if shapes.clone().any(|shape| outside(shape, 1.0)) || sizes.into_iter().any(too_small_or_unknown) {
+        BOUND_HIT
+    } else {
+        0.0
+    }
 }
 
 /// Whether a nominal parameter is beyond its tolerance by more than its own error.
@@ -299,7 +314,7 @@ pub(crate) fn beyond(problem: &Problem, tolerance: &Tolerance, effect: &str, val
 
 #[cfg(test)]
 mod tests {
-    use super::{BOUND_HIT, Weighed, against_each_other, at_a_bound, worth_their_more};
+    use super::{BOUND_HIT, NEVER, Weighed, against_each_other, at_a_bound, worth_their_more};
 
     fn set(effects: &[&'static str], nats: f64) -> Weighed {
         Weighed { effects: effects.to_vec(), fit: None, nats, cost: 18.0 * effects.len() as f64, rare: 8.0 }
@@ -321,6 +336,15 @@ mod tests {
         for (error, costs) in [(1.1, BOUND_HIT), (0.1, 0.0)] {
             let cost = at_a_bound("flexible_mode", &[0.92, 46.0, 0.1], &[error, 2.0, 0.05]);
             assert_eq!(cost.to_bits(), costs.to_bits(), "+- {error}");
+        }
+    }
+
+    #[test]
+    fn closed_form_a_shape_far_beyond_its_range_is_ruled_out() {
+        // a rate of 5e-3 rad/s is the least realistic one
+        for (rate_radps, costs) in [(5e-3, 0.0), (2e-3, BOUND_HIT), (4e-4, NEVER)] {
+            let cost = at_a_bound("stribeck", &[5e-4, rate_radps], &[5e-5, 1e-5]);
+            assert_eq!(cost.to_bits(), costs.to_bits(), "{rate_radps} rad/s");
         }
     }
 

@@ -17,6 +17,9 @@ const ALIGNMENT_RAD: f64 = 1e-3;
 /// the model file has no name for it.
 const ROUNDNESS: f64 = 1.0;
 
+/// How inputs run between rows, from lines, 0, to cubics, 1, and a little more than those: nobody logs it.
+const CURVED: f64 = 1.25;
+
 /// One nominal parameter.
 #[derive(Debug, Clone, Copy)]
 pub struct Nuisance {
@@ -28,9 +31,19 @@ pub struct Nuisance {
     pub tolerance: f64,
     /// Step of the finite difference.
     pub step: f64,
-    field: fn(&mut Physics) -> &mut f64,
+    field: Field,
     /// Whether a shift is added; others are logarithms of a ratio, so that scales of all torques together are a line.
     pub absolute: bool,
+}
+
+type Field = fn(&mut Physics) -> &mut f64;
+
+fn relative(tolerance: f64, name: &'static str, field: Field) -> Nuisance {
+    Nuisance { name, sigma: UNIFORM * tolerance, tolerance, step: STEP * tolerance, field, absolute: false }
+}
+
+fn added(tolerance: f64, name: &'static str, field: Field) -> Nuisance {
+    Nuisance { absolute: true, ..relative(tolerance, name, field) }
 }
 
 impl Nuisance {
@@ -90,16 +103,6 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
     let default = tolerance.default_relative;
     let unbalance = &physics.config.unbalance;
     let size = unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6);
-    let of = |tolerance: f64, name, absolute, field| Nuisance {
-        name,
-        sigma: UNIFORM * tolerance,
-        tolerance,
-        step: STEP * tolerance,
-        field,
-        absolute,
-    };
-    let relative = |tolerance, name, field| of(tolerance, name, false, field);
-    let added = |tolerance, name, field| of(tolerance, name, true, field);
     // what is logged off by a bias b is what H b on the float would do
     let bias_nm = physics.config.gyro.angular_momentum_nm_s * tolerance.vehicle_rate_bias_radps;
     let biased = (bias_nm > 0.0).then(|| added(bias_nm, "bias of the vehicle rate", |p| &mut p.float_nm));
@@ -118,6 +121,7 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative(tolerance.gimbal_inertia, "gimbal_inertia", |p| &mut p.config.servo.gimbal_inertia_kg_m2),
         relative(default, "float inertia", |p| &mut p.config.gyro.float_inertia_kg_m2),
         relative(default, "slip rate", |p| &mut p.config.bearing.slip_rate_radps),
+        added(CURVED, "inputs between rows", |p| &mut p.curved),
         added(ROUNDNESS, "roundness of the clamp", |p| &mut p.friction.corner.wide),
         added(ROUNDNESS, "roundness of half its width", |p| &mut p.friction.corner.middle),
         added(ROUNDNESS, "roundness of its corners alone", |p| &mut p.friction.corner.narrow),

@@ -13,6 +13,10 @@ const ONWARD: f64 = 7.0;
 /// The same over the scatter on the plateau: wherever the stop is, the float stands still on it as no peak does.
 const ENTERS: f64 = 30.0;
 const FLAT: f64 = 150.0;
+/// How near the nominal stop it is the likeliest that holds a float still, and the same there.
+const NEAR: f64 = 0.1;
+const ENTERS_NEAR: f64 = 4.0;
+const FLAT_NEAR: f64 = 60.0;
 /// Least share of the nominal stop at which a plateau that scatters is one, or a stop without a plateau is looked for.
 pub(crate) const LEAST_STOP: f64 = 0.2;
 /// Shortest plateau [s].
@@ -39,6 +43,8 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
     let least = (SHORTEST_S / period_s) as usize;
     let finite: Vec<bool> = theta_rad.iter().map(|value| value.is_finite()).collect();
     let noise = rough(theta_rad, &finite);
+    let near = (peak / stop_rad - 1.0).abs() < NEAR;
+    let (enters, lasts) = if near { (ENTERS_NEAR, FLAT_NEAR) } else { (ENTERS, FLAT) };
     let (band, least_scatter) = ((SHARE * peak).max(NOISES * noise), noise.max(least_count(theta_rad)));
     let mut on_stop = vec![false; theta_rad.len()];
     let mut level = Vec::new();
@@ -53,7 +59,7 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
         let steep = came > CAME * band && onward > ONWARD * band;
         let flat = || {
             let scatter = scatter_rad(&theta_rad[start..k]).max(least_scatter);
-            came > ENTERS * scatter && onward > FLAT * scatter
+            came > enters * scatter && onward > lasts * scatter
         };
         if k - start > least && (steep && peak > LEAST_STOP * stop_rad || flat()) {
             level.extend(theta_rad[start..k].iter().map(|value| value.abs()));
@@ -102,6 +108,16 @@ mod tests {
             let own = plateau(&swung(1.4 * held_rad, held_rad), 1e-3, STOP_RAD).expect("a plateau");
             assert!((own.level_rad / held_rad - 1.0).abs() < 1e-3, "{held_rad}: {}", own.level_rad);
         }
+    }
+
+    #[test]
+    fn closed_form_a_stop_near_the_nominal_one_is_told_under_noise() {
+        // comes onto it with a few noises a row, as another motion may where no stop is expected
+        let read = noisy(1.7e-3, 1.35e-3, 2e-3, 1.4e-5);
+        let own = plateau(&read, 1e-3, 1.43e-3).expect("a stop");
+        assert!((own.level_rad / 1.35e-3 - 1.0).abs() < 2e-3, "{}", own.level_rad);
+        assert_eq!(plateau(&read, 1e-3, STOP_RAD), None);
+        assert_eq!(plateau(&noisy(1.4e-3, f64::MAX, 2e-3, 1.4e-5), 1e-3, 1.43e-3), None);
     }
 
     #[test]

@@ -28,6 +28,19 @@ pub struct Inputs {
     pub load_by_turn: [Vec<f64>; 2],
     /// What the mean of `T_load` since the row before is above the line between the rows [N m].
     pub bulge_nm: Vec<f64>,
+    /// What rows must have more for lines between them to have the means of cubics.
+    pub curve: Curve,
+}
+
+/// A twelfth of the second differences, less than none: what the mean of a cubic through rows has more than that of a line.
+#[derive(Debug, Clone, Default)]
+pub struct Curve {
+    /// Of the specific force along x, y, z [m/s2].
+    pub accel_mps2: [Vec<f64>; 3],
+    /// Of the vehicle rate [rad/s].
+    pub rate_radps: Vec<f64>,
+    /// Of `T_load` [N m].
+    pub load_nm: Vec<f64>,
 }
 
 impl Inputs {
@@ -49,6 +62,11 @@ impl Inputs {
             (0..8).map(|part| load_nm(bearing, between(k, (f64::from(part) + 0.5) / 8.0))).sum::<f64>() / 8.0 - chord
         };
         self.bulge_nm = (0..x.len()).map(|k| if k == 0 { 0.0 } else { bulge(k) }).collect();
+        self.curve = Curve {
+            accel_mps2: self.accel_mps2.each_ref().map(|axis| curved(axis)),
+            rate_radps: curved(&self.rate_radps),
+            load_nm: curved(&self.load_nm),
+        };
         let mut turned = begin_rad;
         let mut last = self.rate_radps.first().copied().unwrap_or(0.0);
         self.turned_rad = self
@@ -121,8 +139,24 @@ impl Inputs {
             load_nm,
             load_by_turn: self.load_by_turn.each_ref().map(moved),
             bulge_nm: moved(&self.bulge_nm),
+            curve: Curve {
+                accel_mps2: self.curve.accel_mps2.each_ref().map(moved),
+                rate_radps: moved(&self.curve.rate_radps),
+                load_nm: moved(&self.curve.load_nm),
+            },
         }
     }
+}
+
+/// ```text
+/// mean of a cubic - mean of the line = -h^2 f''/12        h^2 f'' = f(k + 1) - 2 f(k) + f(k - 1)
+/// ```
+fn curved(values: &[f64]) -> Vec<f64> {
+    let mut curve = vec![0.0; values.len()];
+    for (place, three) in curve.iter_mut().skip(1).zip(values.windows(3)) {
+        *place = (2.0 * three[1] - three[0] - three[2]) / 12.0;
+    }
+    curve
 }
 
 fn less(a: &[f64], b: &[f64]) -> Vec<f64> {

@@ -7,7 +7,7 @@ use super::bearing::Viscous;
 use super::cable::Stops;
 use super::chain::{PHI, PHI_RATE};
 use super::corner::Corner;
-use super::inputs::turned;
+use super::inputs::{Curve, turned};
 use super::lanes::{Lanes, within};
 use super::now::Now;
 
@@ -37,6 +37,8 @@ pub(super) struct Law<'a, const L: usize> {
     float_kg_m: Lanes<L>,
     turns: [Lanes<L>; 3],
     is_turned: bool,
+    curved: Lanes<L>,
+    is_curved: bool,
     shaped_friction: bool,
     /// Whether friction builds up over a displacement, in all lanes.
     pub(super) presliding: bool,
@@ -73,6 +75,8 @@ impl<'a, const L: usize> Law<'a, L> {
             float_nm: of(&|own| own.float_nm),
             float_kg_m: of(&|own| own.float_kg_m),
             turns: [0, 1, 2].map(|axis| of(&|own| own.turned_rad[axis])),
+            curved: of(&|own| own.curved),
+            is_curved: any(&|own| own.curved.abs() > 0.0),
             is_turned: any(&|own| own.turned_rad.iter().any(|angle| angle.abs() > 0.0)),
             shaped_friction: any(&|own| {
                 own.friction.per_g != 0.0 || own.friction.stribeck.is_some() || own.friction.drift.is_some()
@@ -201,5 +205,18 @@ impl<'a, const L: usize> Law<'a, L> {
         let [about_x, about_y, about_z] = self.turns;
         now.accel = turned(logged.map(Lanes::all), [about_x, about_y, about_z]);
         now.load += about_x * load_by_turn[0] + about_y * load_by_turn[1];
+    }
+
+    /// Inputs that run along curves between rows.
+    #[inline(always)]
+    pub(super) fn between_rows(&self, now: &mut Now<L>, curve: &Curve, k: usize) {
+        if !self.is_curved {
+            return;
+        }
+        for axis in 0..3 {
+            now.accel[axis] += self.curved * curve.accel_mps2[axis][k];
+        }
+        now.rate += self.curved * curve.rate_radps[k];
+        now.load += self.curved * curve.load_nm[k];
     }
 }

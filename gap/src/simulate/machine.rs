@@ -80,6 +80,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             time_s: inputs.start_s + k as f64 * inputs.period_s,
         };
         self.law.aligned(&mut now, logged, [inputs.load_by_turn[0][k], inputs.load_by_turn[1][k]]);
+        self.law.between_rows(&mut now, &inputs.curve, k);
         now
     }
 

@@ -24,7 +24,7 @@ pub(crate) use bearing::{Viscous, load_nm};
 pub use begin::Begin;
 pub(crate) use chain::{ANGLES, TORQUES};
 pub use corner::Corner;
-pub use inputs::Inputs;
 pub(crate) use inputs::turned;
+pub use inputs::{Curve, Inputs};
 pub use physics::{BuildUp, Fall, Friction, Hysteresis, Loop, Measurement, Physics, Ripple, Stribeck};
 pub use predict::{Prediction, Push, Variant, predict, predict_each};

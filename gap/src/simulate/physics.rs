@@ -19,6 +19,8 @@ pub struct Physics {
     pub cross_axis_kg_m2: f64,
     /// Turn of the accelerometers against the platform about x, y, z [rad].
     pub turned_rad: [f64; 3],
+    /// Whether inputs run along lines between rows, 0, or along cubics, 1.
+    pub curved: f64,
     /// Spring of the cable [N m/rad].
     pub spring_nm_per_rad: f64,
     /// Loop of the cable.
@@ -211,6 +213,7 @@ impl Physics {
             anisoelasticity: 0.0,
             cross_axis_kg_m2: 0.0,
             turned_rad: [0.0; 3],
+            curved: 0.0,
             spring_nm_per_rad: 0.0,
             hysteresis: None,
             ripple: None,

@@ -195,12 +195,22 @@ mod tests {
     use crate::simulate::{Begin, Inputs, Physics};
 
     fn swayed(rows: usize) -> Inputs {
+        shaken(rows, 1e-3, 0.0)
+    }
+
+    /// With vibration of 40 Hz on top.
+    fn shaken(rows: usize, period_s: f64, vibration_mps2: f64) -> Inputs {
         let wave = |size: f64, hz: f64| -> Vec<f64> {
-            (0..rows).map(|k| size * (std::f64::consts::TAU * hz * k as f64 * 1e-3).sin()).collect()
+            (0..rows).map(|k| size * (std::f64::consts::TAU * hz * k as f64 * period_s).sin()).collect()
         };
+        let vibrating = |wave: Vec<f64>, vibration: Vec<f64>| wave.iter().zip(vibration).map(|(a, b)| a + b).collect();
         let mut inputs = Inputs {
-            period_s: 1e-3,
-            accel_mps2: [wave(3.0, 0.7), wave(5.0, 1.1), wave(9.0, 0.4)],
+            period_s,
+            accel_mps2: [
+                wave(3.0, 0.7),
+                vibrating(wave(5.0, 1.1), wave(vibration_mps2, 40.0)),
+                vibrating(wave(9.0, 0.4), wave(vibration_mps2, 40.0)),
+            ],
             rate_radps: wave(0.3, 2.3),
             ..Inputs::default()
         };
@@ -211,6 +221,23 @@ mod tests {
     fn bits(prediction: &Prediction) -> Vec<u64> {
         let of = [&prediction.gyro_angle_rad, &prediction.motor_torque_nm, &prediction.gimbal_angle_rad];
         of.into_iter().flatten().map(|value| value.to_bits()).collect()
+    }
+
+    #[test]
+    fn closed_form_inputs_along_cubics_are_those_of_eight_times_as_many_rows() {
+        let (lines, fine) = (shaken(750, 4e-3, 20.0), shaken(6000, 5e-4, 20.0));
+        let of = |inputs: &Inputs, curved: f64| {
+            let mut physics = Physics { curved, ..platform(&gimbal_model_file::ModelFile::default()) };
+            physics.config.period_s = inputs.period_s;
+            physics.config.bearing.count = 0;
+            predict(&physics, inputs, &Begin::at(&physics, &fine, 0.0, None), usize::MAX).gyro_angle_rad
+        };
+        let converged = of(&fine, 1.0);
+        let off = |curved: f64| {
+            let angles = of(&lines, curved);
+            angles.iter().zip(converged.iter().step_by(8)).skip(250).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
+        };
+        assert!(off(1.0) < 0.02 * off(0.0), "{:e} of {:e}", off(1.0), off(0.0));
     }
 
     #[test]
@@ -234,6 +261,9 @@ mod tests {
                 apply(effect, &entry.typical(), &mut own);
                 all.push(own);
             }
+            let mut curved = base.clone();
+            curved.curved = share;
+            all.push(curved);
             let mut stops = base.clone();
             stops.friction.load_factor += share;
             apply("cable_hysteresis", &[6e-4, 0.05, 1.0], &mut stops);

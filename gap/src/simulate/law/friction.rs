@@ -195,6 +195,6 @@ impl<const L: usize> Law<'_, L> {
     /// Friction that the load's bulge above the line adds.
     #[inline(always)]
     pub(in crate::simulate) fn bulge_nm(&self, now: &Now<L>, zeta: Lanes<L>) -> Lanes<L> {
-        now.bulge * self.load_factor * zeta
+        if self.no_bearing { Lanes::all(0.0) } else { now.bulge * self.load_factor * zeta }
     }
 }
