@@ -6,8 +6,9 @@ use gimbal_plant::Effect;
 use super::left_over::left_over;
 use super::probability::{Probabilities, SetProbability};
 use super::samples::{steps, stop_change};
+use super::set::holds;
 use super::strange::{Stranger, strangers};
-use super::weigh::{Weighed, best, caution, hidden_beside, holds, moves_freely, weigh};
+use super::weigh::{Weighed, best, caution, hidden_beside, moves_freely, weigh};
 use crate::fit::{Fit, Problem, Search};
 
 /// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be

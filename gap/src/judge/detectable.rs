@@ -4,10 +4,10 @@ use gimbal_model_file::Tolerance;
 use gimbal_plant::Effect;
 use nalgebra::DVector;
 
+use super::against::BEYOND;
 use super::comb;
 use super::decide::Decision;
 use super::samples::least_stop_change;
-use super::weigh::BEYOND;
 use crate::fit::{Fit, Problem, solve};
 use crate::record::{Signal, peak_rad, plateau};
 

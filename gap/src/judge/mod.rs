@@ -1,5 +1,6 @@
 //! From fits to a verdict: which effects, how sure, what else it might be, how far the gap shrinks.
 
+mod against;
 mod closed_loop;
 mod comb;
 mod correlation;
@@ -19,6 +20,7 @@ mod portrait;
 mod probability;
 mod samples;
 mod scale;
+mod set;
 mod shrink;
 mod spread;
 mod strange;
@@ -26,6 +28,7 @@ mod stretch;
 mod torques;
 mod weigh;
 
+pub(crate) use against::{HELPS, NEVER, at_a_bound, beyond};
 pub(crate) use closed_loop::in_step;
 pub use closed_loop::{Yardstick, free_running, one_step};
 pub use correlation::{Correlation, bounds_hit, correlations};
@@ -39,12 +42,10 @@ pub use portrait::{Portrait, portrait};
 pub(crate) use probability::Probabilities;
 pub use probability::SetProbability;
 pub(crate) use samples::READ_OFF;
+pub(crate) use set::is_part;
 pub use shrink::{Shrink, ShrinkSignal, shrink};
 pub use spread::Spread;
 pub use strange::Stranger;
 pub(crate) use strange::strangers;
 pub(crate) use stretch::{carried_by_one_log, carried_by_one_stretch, pieces};
-pub(crate) use weigh::{
-    COST_OF_SHIFT, HELPS, NEVER, RARE_SHIFT, Weighed, at_a_bound, best, beyond, caution, costs_of, is_part,
-    worth_their_more,
-};
+pub(crate) use weigh::{COST_OF_SHIFT, RARE_SHIFT, Weighed, best, caution, costs_of, worth_their_more};

@@ -1,6 +1,7 @@
 //! Probabilities of sets of effects, from what each is worth.
 
-use super::weigh::{Weighed, is_part};
+use super::set::is_part;
+use super::weigh::Weighed;
 
 /// Nats that count as one in probabilities, of a single effect and of one more: from logs with open answers, as what the
 /// noise is not known for and what the formulation leaves weigh in; and the share of what the best set gains.

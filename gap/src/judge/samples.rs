@@ -2,10 +2,10 @@
 
 use gimbal_model_file::Tolerance;
 
+use super::against::BEYOND;
 use super::comb;
 use super::grid;
 use super::in_loop::loop_sees;
-use super::weigh::BEYOND;
 use crate::fit::{Fit, Problem};
 use crate::record::{Channel, Signal};
 

@@ -216,7 +216,8 @@ impl<'a, const L: usize> Law<'a, L> {
         for axis in 0..3 {
             now.accel[axis] += self.curved * curve.accel_mps2[axis][k];
         }
-        now.rate += self.curved * curve.rate_radps[k];
+        now.bend = self.curved * curve.rate_radps[k];
+        now.rate += now.bend;
         now.load += self.curved * curve.load_nm[k];
     }
 }

@@ -77,6 +77,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             cross: inputs.cross_radps.get(k).copied().unwrap_or(0.0),
             turned: inputs.turned_rad[k],
             bulge: inputs.bulge_nm[k],
+            bend: Lanes::all(0.0),
             time_s: inputs.start_s + k as f64 * inputs.period_s,
         };
         self.law.aligned(&mut now, logged, [inputs.load_by_turn[0][k], inputs.load_by_turn[1][k]]);
@@ -143,13 +144,10 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
     /// One row: full steps where nothing turns around, shorter ones elsewhere.
     #[inline(always)]
     fn row(&self, state: &mut Running<N, L>, now: &Now<L>, next: &Now<L>) {
-        let mut from = *now;
+        let end = |part: u32| now.end(next, part, self.full_steps);
+        let mut from = if self.full_steps == 1 { *now } else { end(0) };
         for part in 1..=self.full_steps {
-            let to = if part == self.full_steps {
-                *next
-            } else {
-                now.toward(next, f64::from(part) / f64::from(self.full_steps))
-            };
+            let to = if self.full_steps == 1 { *next } else { end(part) };
             match if self.is_calm(state, &to) { Some(FULL_STEP) } else { self.common_division(state, &to) } {
                 Some(division) => self.divided(state, &from, &to, division),
                 None => {
@@ -170,7 +168,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
     fn divided(&self, state: &mut Running<N, L>, from: &Now<L>, to: &Now<L>, division: usize) {
         let parts = DIVISIONS[division];
         for part in 1..=parts {
-            let end = if part == parts { *to } else { from.toward(to, f64::from(part) / f64::from(parts)) };
+            let end = if parts == 1 { *to } else { from.along(to, f64::from(part) / f64::from(parts)) };
             self.step(state, &end, division);
             self.contact(state);
         }
