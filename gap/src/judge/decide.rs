@@ -281,11 +281,13 @@ pub(crate) fn strangeness(nats: f64, limit: f64, scale: f64) -> f64 {
     past(nats, limit, scale).max((odds / (1.0 + odds)).min(BELOW_LIMIT))
 }
 
-/// What the samples show by themselves: a stop elsewhere, as the pick-off reads it, and a grid of angles.
+/// What the samples show by themselves: a stop elsewhere, as the pick-off reads it, and a grid of angles. `is_rest` says whether
+/// that may be what is left unexplained.
 fn direct(problem: &Problem, step_rad: Option<f64>, tolerance: &Tolerance, decision: &mut Decision) {
     let scale = |found: &Found| if found.effect == "pickoff_scale" { found.values[0] } else { 0.0 };
     let pickoff = 1.0 + decision.found.iter().map(scale).sum::<f64>();
-    let mut add = |effect: &'static str, value: f64, error: f64, probability: f64| {
+    let strange = decision.goes_with().is_some();
+    let mut add = |effect: &'static str, value: f64, error: f64, probability: f64, is_rest: bool| {
         if Effect::from_name(effect).is_none() || problem.not_looked_for.contains(&effect) {
             return;
         }
@@ -298,7 +300,7 @@ fn direct(problem: &Problem, step_rad: Option<f64>, tolerance: &Tolerance, decis
             set.effects.push(effect);
         }
         if decision.verdict == Verdict::NoGap
-            || decision.verdict == Verdict::Unexplained && decision.left_over[1] < ROUGH
+            || decision.verdict == Verdict::Unexplained && is_rest && decision.left_over[1] < ROUGH
         {
             decision.verdict = Verdict::Explained;
             let sure = 1.0 - decision.unknown_probability;
@@ -311,9 +313,10 @@ fn direct(problem: &Problem, step_rad: Option<f64>, tolerance: &Tolerance, decis
         }
     };
     if let Some((change, error)) = stop_change(problem, pickoff, tolerance) {
-        add("stop_angle", change, error, 0.95);
+        add("stop_angle", change, error, 0.95, !strange);
     }
     if let Some(step_rad) = step_rad {
-        add("pickoff_quantisation", step_rad, 1e-3 * step_rad, 0.97);
+        // where a row is rounded to nobody knows, so that what it leaves may go with anything
+        add("pickoff_quantisation", step_rad, 1e-3 * step_rad, 0.97, true);
     }
 }
