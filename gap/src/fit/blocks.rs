@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::draft::Draft;
 use super::release::Released;
-use super::signals::{Kept, Signals, difference, scaled};
+use super::signals::{Kept, Signals};
 use super::turning::{SLOWLY, at_once, mostly};
 use crate::record::{RateNoise, Record};
-use crate::simulate::{Begin, Physics, Prediction, Variant, predict_each};
+use crate::simulate::Variant;
 
 /// Most blocks.
 const MOST: usize = 800;
@@ -35,23 +35,19 @@ pub(crate) struct Turned {
 
 /// What blocks are made from.
 pub(crate) struct Turning<'a> {
-    pub(crate) record: &'a Record,
-    pub(crate) base: &'a Physics,
-    pub(crate) begin: &'a Begin,
-    pub(crate) nominal: &'a Prediction,
+    pub(crate) draft: Draft<'a>,
     /// Rows at which the bearing turns around.
     pub(crate) turns: &'a [bool],
-    /// Over each channel's noise.
-    pub(crate) scaled: &'a [f64],
 }
 
 impl Turning<'_> {
     fn blocks(&self) -> Vec<Block> {
-        if self.record.rate_noise.rms_radps < 1e-9 || mostly(self.turns) {
+        let rate_noise = &self.draft.record.rate_noise;
+        if rate_noise.rms_radps < 1e-9 || mostly(self.turns) {
             return Vec::new();
         }
         let least = if at_once(self.turns) { 1 } else { SLOWLY };
-        let mut longest = self.record.rate_noise.rows_alike().max(least);
+        let mut longest = rate_noise.rows_alike().max(least);
         loop {
             let blocks = divided(self.turns, longest);
             if blocks.len() <= MOST || longest > AFTER / 4 {
@@ -63,41 +59,21 @@ impl Turning<'_> {
 
     /// The blocks, and what a change of their rate does.
     pub(crate) fn turned(&self) -> Turned {
-        let blocks = self.blocks();
-        let step = STEP * self.base.config.bearing.slip_rate_radps;
-        let inputs = &self.record.inputs;
+        let (draft, blocks) = (&self.draft, self.blocks());
+        let step = STEP * draft.base.config.bearing.slip_rate_radps;
         let mut moved = Vec::new();
         let groups = far_apart(&blocks);
         for some in groups.chunks(TOGETHER) {
             let of = |group: &Vec<usize>| {
-                let mut rate_radps = inputs.rate_radps.clone();
+                let mut rate_radps = draft.record.inputs.rate_radps.clone();
                 group.iter().flat_map(|&index| blocks[index].clone()).for_each(|k| rate_radps[k] += step);
                 rate_radps
             };
             let rates: Vec<Vec<f64>> = some.iter().map(of).collect();
-            let (physics, begin) = (self.base, self.begin);
-            let variants: Vec<Variant> = rates
-                .iter()
-                .map(|rate_radps| Variant {
-                    physics: physics.clone(),
-                    begin: begin.clone(),
-                    rate_radps: Some(rate_radps),
-                    pushed: None,
-                    rows: usize::MAX,
-                })
-                .collect();
-            moved.extend(predict_each(&variants, inputs, |_, moved| {
-                Kept::new(&scaled(difference(self.record, &moved, self.nominal, step), self.scaled))
-            }));
+            let at = |rate_radps| Variant { rate_radps: Some(rate_radps), ..draft.variant(draft.base.clone()) };
+            moved.extend(draft.differences(rates.iter().map(|rates| (at(&rates[..]), step)).collect()));
         }
-        let draft = Draft {
-            record: self.record,
-            base: self.base,
-            begin: self.begin,
-            nominal: self.nominal,
-            over_noise: self.scaled,
-        };
-        Turned { blocks, moved: groups.into_iter().zip(moved).collect(), released: Released::new(&draft) }
+        Turned { blocks, moved: groups.into_iter().zip(moved).collect(), released: Released::new(draft) }
     }
 }
 

@@ -62,10 +62,7 @@ impl Draft<'_> {
             by[state] = STATE_STEP * self.state_sigma(state);
             Variant { pushed: Some(Push { rows, by }), ..self.variant(self.base.clone()) }
         };
-        let variants: Vec<Variant> = self.states().into_iter().map(pushed).collect();
-        predict_each(&variants, &self.record.inputs, |_, moved| {
-            Kept::new(&scaled(difference(self.record, &moved, self.nominal, STATE_STEP), self.over_noise))
-        })
+        self.differences(self.states().into_iter().map(|state| (pushed(state), STATE_STEP)).collect())
     }
 
     /// How far a place of the beginning may be from where the log seems to begin. The slow section remembers what
@@ -92,7 +89,8 @@ impl Draft<'_> {
         (variant, step)
     }
 
-    fn variant(&self, physics: Physics) -> Variant<'static> {
+    /// A platform that begins there.
+    pub(super) fn variant(&self, physics: Physics) -> Variant<'static> {
         Variant { physics, begin: self.begin.clone(), rate_radps: None, pushed: None, rows: usize::MAX }
     }
 

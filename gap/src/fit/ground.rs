@@ -213,8 +213,10 @@ impl<'a> Ground<'a> {
         let turning = &remembered(turns);
         let (plans, shapes) = (&self.plans, &self.shapes);
         let behind = Loop { plans, shapes, turning, turning_noise, rate_noise, period_s };
-        let turning =
-            |base, begin, nominal| Turning { record, base, begin, nominal, turns, scaled: &self.over_noise }.turned();
+        let turning = |base, begin, nominal| {
+            let draft = Draft { record, base, begin, nominal, over_noise: &self.over_noise };
+            Turning { draft, turns }.turned()
+        };
         let as_fitted = platform.map(|own| turning(&own.physics, &own.begin, &own.prediction));
         let turned =
             as_fitted.as_ref().unwrap_or_else(|| self.turned.get_or_init(|| turning(base, &self.begin, nominal)));

@@ -113,37 +113,17 @@ impl Inputs {
         less(&self.turned_rad, &prediction.gimbal_angle_rad)
     }
 
-    /// The inputs as they were: the log has them late by `skew_s`.
+    /// The columns as they were: the log has them late by `skew_s`. What follows from them is not filled in.
     #[must_use]
     pub fn advanced(&self, skew_s: f64) -> Self {
         let later = Later::by(skew_s / self.period_s);
-        let moved = |values: &Vec<f64>| later.line(values);
-        let begin_rad = self.turned_rad.first().copied().unwrap_or(0.0);
-        let mut turned_rad = moved(&self.turned_rad);
-        let off = turned_rad.first().map_or(0.0, |first| begin_rad - first);
-        for turned in &mut turned_rad {
-            *turned += off;
-        }
-        // between two rows the load stands above the line by a parabola
-        let mut load_nm = moved(&self.load_nm);
-        for (load, bulge) in load_nm.iter_mut().zip(later.end(&self.bulge_nm)) {
-            *load += 6.0 * later.share * (1.0 - later.share) * bulge;
-        }
         Self {
             period_s: self.period_s,
             start_s: self.start_s,
-            accel_mps2: [0, 1, 2].map(|axis| moved(&self.accel_mps2[axis])),
-            rate_radps: moved(&self.rate_radps),
-            cross_radps: moved(&self.cross_radps),
-            turned_rad,
-            load_nm,
-            load_by_turn: self.load_by_turn.each_ref().map(moved),
-            bulge_nm: moved(&self.bulge_nm),
-            curve: Curve {
-                accel_mps2: self.curve.accel_mps2.each_ref().map(moved),
-                rate_radps: moved(&self.curve.rate_radps),
-                load_nm: moved(&self.curve.load_nm),
-            },
+            accel_mps2: self.accel_mps2.each_ref().map(|axis| later.line(axis)),
+            rate_radps: later.line(&self.rate_radps),
+            cross_radps: later.line(&self.cross_radps),
+            ..Self::default()
         }
     }
 }
@@ -214,10 +194,5 @@ impl Later {
             b + 0.5 * x * (c - a + x * (2.0 * a - 5.0 * b + 4.0 * c - d + x * (3.0 * (b - c) + d - a)))
         };
         around.map(cubic).collect()
-    }
-
-    /// At the end of the period in which the later instant is.
-    fn end<'a>(&self, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        self.rows(values, 1)
     }
 }
