@@ -37,7 +37,7 @@ fn main() {
     record.quieten(&gimbal_gap::library::platform(&model));
     println!("rate noise {:.2e} filtered {}", record.rate_noise.rms_radps, record.rate_noise.pass.len() > 1);
     let mut problem = Problem::new(&record, &model);
-    let nominal = null(&problem, None);
+    let nominal = null(&mut problem, None);
     let search = search(&mut problem, nominal);
     let count = problem.whitener.count() as f64;
     println!("noise {:?} count {count} null square/count {:.4}", problem.noise, search.null.square / count);

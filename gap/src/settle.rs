@@ -6,7 +6,7 @@
 
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Effort, Fit, Ground, Known, Problem, Search, Set, ended, look, null, rebase, refine};
+use crate::fit::{Effort, Fit, Ground, Known, Problem, Search, Set, ended, look, null, refine};
 use crate::record::Record;
 
 /// A fit may leave this much of the noise that was expected, and no less.
@@ -30,6 +30,7 @@ pub(crate) struct Settled<'a> {
 pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
     let mut on = Measured::new(Ground::new(record, model));
     loop {
+        on.complete();
         let mut looked = look(&on.problem, on.nominal.clone(), on.carried.take());
         let mut beaten = on.may_be_beaten_by(looked.closest());
         // pairs are for a noise that no single effect stays below
@@ -71,25 +72,29 @@ struct Measured<'a> {
 impl<'a> Measured<'a> {
     fn new(ground: Ground<'a>) -> Self {
         let mut problem = ground.problem(None);
-        let mut nominal = null(&problem, None);
+        let mut nominal = null(&mut problem, None);
         let known = if is_near(&problem, &nominal) { ground.known_behind(&nominal) } else { None };
         if known.is_some() {
             problem = ground.problem(known.clone());
-            nominal = null(&problem, Some(&nominal));
+            nominal = null(&mut problem, Some(&nominal));
         }
         let mut on = Self { ground, known, problem, nominal, carried: None, more: AGAIN, stands_at: f64::INFINITY };
         if !on.is_beaten_by(&on.nominal) {
-            rebase(&mut on.problem, &on.nominal);
             return on;
         }
         // near the noise, and at the end of their tolerance, the nominal parameters stand for an effect
         let mut best = on.nominal.clone();
         if is_near(&on.problem, &best) && best.is_strained(&on.problem) {
-            rebase(&mut on.problem, &best);
+            on.complete();
             best = look(&on.problem, best, None).widened(&mut on.problem).closest().clone();
             best = ended(&mut on.problem, best);
         }
         on.again(&best)
+    }
+
+    /// Ready for a look through the library.
+    fn complete(&mut self) {
+        self.ground.complete(&mut self.problem);
     }
 
     /// Whether a fit leaves less than the noise.
@@ -112,8 +117,7 @@ impl<'a> Measured<'a> {
         // what is not needed any more is most of the memory
         drop(problem);
         let mut problem = ground.problem(known.clone());
-        let nominal = null(&problem, Some(&nominal));
-        rebase(&mut problem, &nominal);
+        let nominal = null(&mut problem, Some(&nominal));
         Self { ground, known, problem, nominal, carried: None, more, stands_at: f64::INFINITY }
     }
 
@@ -125,6 +129,7 @@ impl<'a> Measured<'a> {
             on.more -= 1;
             on.carried = carried(&on.problem, &best);
             if on.more == 0 {
+                on.complete();
                 on.ground.forget();
                 return on;
             }

@@ -149,7 +149,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Under the noise that what is known to be left shows; without it, under what the nominal parameters and a few effects
-    /// do not explain.
+    /// do not explain. Its columns are those of the beginning and of the nominal parameters.
     pub(crate) fn problem(&self, known: Option<Known>) -> Problem<'a> {
         let (noise, gap, platform) = match known {
             None => (self.rest().clone(), self.rest().clone(), None),
@@ -162,15 +162,14 @@ impl<'a> Ground<'a> {
         let path = Path::new(&whitener, &self.impulse.channels, self.impulse.torque_nm, period_s);
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
-        let mut more = Vec::new();
+        let mut probes = self.raw.len();
         for candidate in self.narrow(&path, &whitener, [&gap, &noise]) {
-            columns.first.push(self.raw.len() + more.len());
+            columns.first.push(probes);
+            probes += candidate.probes.len();
             sigma.extend(candidate.prior.iter().map(|(_, sigma)| *sigma));
-            more.extend(self.draft().probes(&candidate));
             candidates.push(candidate);
         }
-        let more = self.draft().differences(more);
-        let problem = Problem {
+        let mut problem = Problem {
             record: self.record,
             stop_rad: self.stop_rad,
             base: self.base.clone(),
@@ -191,7 +190,21 @@ impl<'a> Ground<'a> {
             ceiling_nm: self.offer.sees_torque.then_some(self.offer.peak_torque_nm),
             sigma,
         };
-        problem.with_columns(&self.raw, &more)
+        let fixed = self.columns.begin + self.columns.nuisances;
+        problem.add_columns(&self.raw[..fixed], &[]);
+        problem
+    }
+
+    /// With the columns of the candidates, too, which are for a search alone; where it has them, it is left.
+    pub(crate) fn complete(&self, problem: &mut Problem) {
+        let has = problem.whitened.len();
+        if has > self.columns.begin + self.columns.nuisances {
+            return;
+        }
+        let narrow = &problem.candidates[self.candidates.len()..];
+        let probes = narrow.iter().flat_map(|candidate| self.draft().probes(candidate)).collect();
+        let more = self.draft().differences(probes);
+        problem.add_columns(self.raw.get(has..).unwrap_or_default(), &more);
     }
 
     /// Gives back what only another problem would need.

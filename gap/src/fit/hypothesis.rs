@@ -65,6 +65,8 @@ pub(crate) struct Free {
     pub(crate) log: bool,
     /// A size that has no scale of its own.
     pub(crate) any_scale: bool,
+    /// A size that small steps multiply: that of a cable's loop goes along with its displacement where that is long.
+    pub(crate) grows: bool,
     pub(crate) sigma: f64,
     pub(crate) center: f64,
 }
@@ -194,6 +196,8 @@ impl<'a> Hypothesis<'a> {
             let step = step[fixed + place];
             if free.log {
                 *value *= step.clamp(-1.0, 1.0).exp();
+            } else if free.grows && step.abs() < value.abs() {
+                *value *= (step / *value).exp();
             } else {
                 *value += step;
             }
@@ -223,7 +227,8 @@ fn free(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Vec<Free> {
                 // cycles and phases move little from where they were found
                 (if parameter.unit == "rad" { 1.0 } else { 0.02 * own.abs().max(1.0) }, own)
             };
-            all.push(Free { effect, value, log, any_scale: size && !log, sigma, center });
+            let grows = size && candidate.effect == "cable_hysteresis";
+            all.push(Free { effect, value, log, any_scale: size && !log, grows, sigma, center });
         }
     }
     all

@@ -93,7 +93,10 @@ impl<'a> Problem<'a> {
     /// Predicts, differentiates, whitens.
     #[must_use]
     pub fn new(record: &'a Record, model: &ModelFile) -> Self {
-        Ground::new(record, model).problem(None)
+        let ground = Ground::new(record, model);
+        let mut problem = ground.problem(None);
+        ground.complete(&mut problem);
+        problem
     }
 
     /// Measured less predicted, each stop left as the log shows that it was.
@@ -107,12 +110,20 @@ impl<'a> Problem<'a> {
         scaled(released.without(&scaled(own, &over)), &self.noise)
     }
 
-    /// With its sensitivities, from those that are not whitened.
-    pub(super) fn with_columns(mut self, raw: &[Kept], more: &[Kept]) -> Self {
-        self.whitened =
-            raw.par_iter().chain(more).map(|column| narrow(&self.whitener.apply(&column.signals()))).collect();
-        self.gram = gram(&slices(&self.whitened), 0..self.whitener.rows());
-        self
+    /// With more sensitivities, from those that are not whitened.
+    pub(super) fn add_columns(&mut self, raw: &[Kept], more: &[Kept]) {
+        let white = |column: &Kept| narrow(&self.whitener.apply(&column.signals()));
+        let fresh: Vec<Vec<f32>> = raw.par_iter().chain(more).map(white).collect();
+        let (rows, before) = (self.whitener.rows(), self.whitened.len());
+        self.whitened.extend(fresh);
+        let whitened = slices(&self.whitened);
+        let (old, new) = whitened.split_at(before);
+        let (beside, own) = (products(old, new, 0..rows), gram(new, 0..rows));
+        let all = whitened.len();
+        self.gram.resize_mut(all, all, 0.0);
+        self.gram.view_mut((0, before), (before, own.ncols())).copy_from(&beside);
+        self.gram.view_mut((before, 0), (own.nrows(), before)).copy_from(&beside.transpose());
+        self.gram.view_mut((before, before), own.shape()).copy_from(&own);
     }
 
     /// The noise that the best fit leaves, over that of the sensors: what is more than the noise is known to is put
@@ -176,15 +187,6 @@ impl<'a> Problem<'a> {
         let fresh = products(&whitened[..fixed], &whitened, 0..self.whitener.rows());
         self.gram.rows_mut(0, fixed).copy_from(&fresh);
         self.gram.columns_mut(0, fixed).copy_from(&fresh.transpose());
-    }
-
-    /// The same without the columns of its candidates, which are for a search alone.
-    pub(crate) fn without_candidates(mut self) -> Self {
-        let fixed = self.columns.begin + self.columns.nuisances;
-        self.whitened.truncate(fixed);
-        self.whitened.shrink_to_fit();
-        self.gram = self.gram.view((0, 0), (fixed, fixed)).into_owned();
-        self
     }
 
     /// The first candidate of an effect; one from elsewhere is taken in where there is none.

@@ -17,6 +17,8 @@ const TRIALS: usize = 9;
 const LEAST_DAMPING: f64 = 3.0;
 /// What a step must promise for sensitivities to be taken anew [nats].
 const WORTH: f64 = 2.0;
+/// What a fit may move by with the sensitivities where it was still its own [nats].
+pub(super) const STILL: f64 = 4.0;
 /// A step that promises less is not taken [nats].
 const NOTHING: f64 = 0.05;
 /// Share of the excess that is put down to the equations being linearised, as noise, while a fit is under way.
@@ -119,6 +121,17 @@ pub(crate) fn linearised(problem: &Problem, square: f64) -> f64 {
 /// Fits a set from the values given, and from the nominal parameters and the beginning of another fit.
 #[must_use]
 pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fit>, effort: Effort) -> Fit {
+    refined(problem, set, start, from, effort).0
+}
+
+/// The same, with the sensitivities to the beginning and to the nominal parameters where they were taken anew at its end.
+pub(super) fn refined(
+    problem: &Problem,
+    set: &Set,
+    start: &[Vec<f64>],
+    from: Option<&Fit>,
+    effort: Effort,
+) -> (Fit, Option<Vec<Vec<f32>>>) {
     let hypothesis = Hypothesis::new(problem, set, start);
     let mut point = from.map_or_else(|| Point::nominal(problem, Vec::new()), |fit| fit.point(problem));
     point.values = start.to_vec();
@@ -129,6 +142,7 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
         outcome,
         linear: Linear::of(problem),
         fresh: false,
+        gained: f64::INFINITY,
         refreshes: effort.refreshes(),
         damping: 0.0,
     };
@@ -145,8 +159,9 @@ pub fn refine(problem: &Problem, set: &Set, start: &[Vec<f64>], from: Option<&Fi
             break;
         }
     }
-    let Walk { point, outcome, .. } = walk;
-    finish(&hypothesis, point, outcome, last)
+    let Walk { point, outcome, linear, gained, .. } = walk;
+    let columns = (gained < STILL).then(|| linear.columns.into_owned());
+    (finish(&hypothesis, point, outcome, last), columns)
 }
 
 /// A set as it stands at a point, without a step.
@@ -183,7 +198,9 @@ struct Walk<'a> {
     linear: Linear<'a>,
     /// Whether the sensitivities are those of the point.
     fresh: bool,
-    /// How often they may still be taken anew.
+    /// What the cost fell by since they were taken anew.
+    gained: f64,
+    /// How often they may still be.
     refreshes: usize,
     damping: f64,
 }
@@ -192,6 +209,7 @@ impl Walk<'_> {
     fn refresh(&mut self) {
         self.refreshes -= 1;
         self.fresh = true;
+        self.gained = 0.0;
         self.linear = Linear::fresh(self.hypothesis, &self.point, &self.outcome);
     }
 
@@ -207,6 +225,7 @@ impl Walk<'_> {
             Equations::new(hypothesis, &point, linear, &sensitivities, &outcome.residual, temper)
         };
         let mut system = equations(&self.linear, &self.outcome);
+        let mut refreshed = false;
         for _ in 0..TRIALS {
             let Some(step) = system.step(self.damping) else { break };
             if step.promised < NOTHING {
@@ -225,14 +244,20 @@ impl Walk<'_> {
                     Went::Nowhere
                 };
                 (self.point, self.outcome, self.fresh) = (next, outcome, false);
+                self.gained += gained;
                 let solution = if self.damping > 0.0 { system.step(0.0)?.solution } else { step.solution };
                 self.damping = if self.damping > LEAST_DAMPING { 0.03 * self.damping } else { 0.0 };
                 return Some((went, (solution, sensitivities)));
             }
             if !self.fresh && self.refreshes > 0 && step.promised > WORTH {
                 self.refresh();
+                refreshed = true;
                 system = equations(&self.linear, &self.outcome);
             } else {
+                // it was not the sensitivities to the nominal parameters that misled
+                if refreshed {
+                    self.refreshes = 0;
+                }
                 self.damping = (10.0 * self.damping).max(LEAST_DAMPING);
             }
         }

@@ -8,7 +8,7 @@ use super::formulations::extend;
 use super::gross::gross;
 use super::heavy::heavy;
 use super::less::with_less;
-use super::refine::Effort;
+use super::refine::{Effort, STILL, refined};
 use super::refit::rebase;
 use super::{Fit, Problem, refine};
 
@@ -51,17 +51,14 @@ const FAR: f64 = 2e3;
 /// How often it is taken further at most, and what of its square it leaves as long as it gets there.
 const MOST_TURNS: usize = 5;
 const GOES_ON: f64 = 0.95;
-/// What a fit may move by with the sensitivities where it was still its own.
-const STILL: f64 = 4.0;
 /// How often sets that are less than the best are tried, while that changes.
 const BACKWARDS: usize = 2;
 /// Most effects of a set.
 const MOST: usize = 3;
 
-/// Looks through the library, from the fit of the nominal parameters alone.
+/// Looks through the library, from the fit of the nominal parameters alone, by the sensitivities there.
 #[must_use]
 pub fn search(problem: &mut Problem, null: Fit) -> Search {
-    rebase(problem, &null);
     look(problem, null, None).widened(problem).finished(problem)
 }
 
@@ -155,14 +152,24 @@ pub(crate) fn ended(problem: &mut Problem, mut fit: Fit) -> Fit {
     fit
 }
 
+/// Whether a fit leaves hardly more than the noise.
+fn is_closed(problem: &Problem, fit: &Fit) -> bool {
+    fit.square <= CLOSED * problem.whitener.count() as f64
+}
+
 fn closest<'a>(null: &'a Fit, fits: &'a [Fit]) -> &'a Fit {
     fits.iter().fold(null, |best, fit| if fit.square < best.square { fit } else { best })
 }
 
-/// The nominal parameters alone, from where another fit has them.
+/// The nominal parameters alone, from where another fit has them; the sensitivities are taken there.
 #[must_use]
-pub fn null(problem: &Problem, from: Option<&Fit>) -> Fit {
-    refine(problem, &Set::default(), &[], from, Effort::Thorough)
+pub fn null(problem: &mut Problem, from: Option<&Fit>) -> Fit {
+    let (fit, columns) = refined(problem, &Set::default(), &[], from, Effort::Thorough);
+    match columns {
+        Some(columns) => problem.replace(columns),
+        None => rebase(problem, &fit),
+    }
+    fit
 }
 
 /// Single effects, the best first; and what they were chosen from.
@@ -183,7 +190,7 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
     );
     fits.extend(heavy(problem, null));
     // what is far from nominal is for a gap that nothing near it closes
-    if near_a_stop || closest(null, &fits).square > CLOSED * problem.whitener.count() as f64 {
+    if near_a_stop || !is_closed(problem, closest(null, &fits)) {
         fits.extend(gross(problem, null));
     }
     sort(problem, null, &mut fits);
@@ -192,8 +199,14 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
 
 /// Sets of one effect more than `size`, from the best of that size.
 fn widen(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>, size: usize) {
-    let seeds: Vec<&Fit> =
+    let mut seeds: Vec<&Fit> =
         fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
+    // beside one that closes the gap, others that are far from it lead to what it leads to
+    let best = closest(null, fits);
+    if is_closed(problem, best) {
+        let gain = |fit: &Fit| null.square - fit.square;
+        seeds.retain(|seed| gain(seed) >= CLOSE * gain(best) || seed.square - best.square < FAR);
+    }
     let wider: Vec<Fit> = seeds
         .par_iter()
         .flat_map(|seed| {

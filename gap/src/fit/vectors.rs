@@ -50,7 +50,8 @@ impl<T: Sample, U: Sample, const A: usize, const B: usize, const S: usize> WithS
             for j in 0..B {
                 for i in 0..A {
                     for place in 0..S {
-                        sums[i][j][place] += left[i][k][place].into() * right[j][k][place].into();
+                        let sum = &mut sums[i][j][place];
+                        *sum = left[i][k][place].into().mul_add(right[j][k][place].into(), *sum);
                     }
                 }
             }

@@ -18,8 +18,7 @@ impl<'a> Material<'a> {
     /// None of a log that does not serve.
     pub(super) fn new(log: usize, diagnosis: &'a Diagnosis, model: &ModelFile) -> Option<Self> {
         let (asked, fit) = (diagnosis.asked.as_ref()?, diagnosis.fit.as_ref()?);
-        let whole = Ground::new(&diagnosis.record, model).problem(asked.known.clone());
-        let mut problem = whole.without_candidates();
+        let mut problem = Ground::new(&diagnosis.record, model).problem(asked.known.clone());
         rebase(&mut problem, fit);
         Some(Self { log, problem, asked })
     }

@@ -116,7 +116,7 @@ impl<const N: usize, const L: usize> Step<N, L> {
 #[inline(always)]
 pub(super) fn add<const N: usize, const L: usize>(next: &mut [Lanes<L>; N], column: &[Lanes<L>; N], value: Lanes<L>) {
     for row in 0..N {
-        next[row] += column[row] * value;
+        next[row] = column[row].mul_add(value, next[row]);
     }
 }
 

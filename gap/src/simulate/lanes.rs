@@ -38,6 +38,15 @@ impl<const L: usize> Lanes<L> {
         self
     }
 
+    /// `self * by + more`, rounded once.
+    #[inline(always)]
+    pub(super) fn mul_add(mut self, by: Self, more: Self) -> Self {
+        for lane in 0..L {
+            self.0[lane] = self.0[lane].mul_add(by.0[lane], more.0[lane]);
+        }
+        self
+    }
+
     #[inline(always)]
     pub(super) fn abs(self) -> Self {
         self.map(f64::abs)
