@@ -26,6 +26,9 @@ const LEAST_PASSED: f64 = 0.02;
 const LEAST_ITS_OWN: f64 = 0.01;
 /// And no more than this share of its deviation may be noise of the motion.
 const MOST_NOISE: f64 = 0.4;
+/// Effort and motion are read at moments apart: by so much [s], or this share of a row.
+const APART_S: f64 = 1.5e-4;
+const APART_ROWS: f64 = 0.5;
 /// Effects that need this share of the effort are looked at as what other effects hang on, too.
 const MUCH_NEEDED: f64 = 0.1;
 /// A gap is one from this power over that of noise on.
@@ -42,6 +45,8 @@ pub(super) struct Balance {
     /// What the effort needed is of.
     pub(super) needs: Needs,
     pub(super) columns: Vec<Vec<f64>>,
+    /// What stands in every balance: the nominal parameters, and moments of reading apart where the motion shows them.
+    pub(super) base: Vec<Shape>,
     pub(super) problem: Problem,
     /// Effects that this motion cannot show.
     pub(super) hidden: Vec<&'static str>,
@@ -50,10 +55,25 @@ pub(super) struct Balance {
 }
 
 impl Balance {
-    /// The balance in which effects and friction's corner were found, and those effects. An effect that the nominal
-    /// parameters lack may look like a rounder corner: where another one leaves less beside what is found, all is looked for
-    /// once more.
+    /// The balance in which effects and friction's corner were found, and those effects. Effort and motion that seem to be
+    /// read further apart than they are have an effect to show.
     pub(super) fn searched(motion: Motion, model: &AxisModel) -> (Self, Set) {
+        let (balance, set) = Self::with_its_corner(motion.clone(), model);
+        if balance.reads_as_one(&set) {
+            return (balance, set);
+        }
+        Self::with_its_corner(Motion { apart: false, ..motion }, model)
+    }
+
+    /// Whether the moments of reading are no further apart beside a set than they may be.
+    fn reads_as_one(&self, set: &Set) -> bool {
+        let (_, amplitudes) = self.fit(&set.members);
+        self.base.len() == NOMINAL.len() || amplitudes[NOMINAL.len()].abs() <= 2.0 * apart_s(&self.motion)
+    }
+
+    /// An effect that the nominal parameters lack may look like a rounder corner of friction: where another one leaves less
+    /// beside what is found, all is looked for once more.
+    fn with_its_corner(motion: Motion, model: &AxisModel) -> (Self, Set) {
         let (balance, set) = Self::with_either_corner(&motion, model);
         // plain least squares have the nominal parameters already
         let added = |shape: &&Shape| **shape != Shape::Scale && !NOMINAL.contains(shape) && !shape.hangs_on_effort();
@@ -96,21 +116,27 @@ impl Balance {
         motion.needed = needs.at(&motion);
         motion.size = rms(&motion.needed).max(1e-30);
         let needed_of = (!beside.is_empty()).then(|| columns_of(&motion, beside));
-        let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
+        let mut base: Vec<Shape> = NOMINAL.to_vec();
+        let mut columns: Vec<Vec<f64>> = base.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
         let effort = motion.raw(&motion.effort);
         let parameters = nominal(model);
         let target: Vec<f64> = (0..effort.len())
-            .map(|row| effort[row] - (0..3).map(|place| parameters[place] * base[place][row]).sum::<f64>())
+            .map(|row| effort[row] - (0..3).map(|place| parameters[place] * columns[place][row]).sum::<f64>())
             .collect();
-        let mut columns = base.clone();
+        let apart = Shape::Lag.on_grid(&motion);
+        if motion.apart && shows(&Shape::Lag, &apart, &motion, model) {
+            base.push(Shape::Lag);
+            columns.extend(apart);
+        }
         let mut candidates: Vec<Candidate> = Vec::new();
         let mut hidden: Vec<&'static str> = Vec::new();
         let mut tried = shapes(&motion);
-        tried.extend(waves(&motion, &target, &base));
+        let parameters_alone = &columns[..NOMINAL.len()];
+        tried.extend(waves(&motion, &target, parameters_alone));
         if !motion.stands {
-            tried.extend(modes(&motion, &target, &base));
+            tried.extend(modes(&motion, &target, parameters_alone));
             if stands_out(&target, &motion) {
-                tried.extend(plays(&motion, &target, &base));
+                tried.extend(plays(&motion, &target, parameters_alone));
             }
         }
         tried.retain(|shape| !model.trusts(shape.effect()));
@@ -125,14 +151,7 @@ impl Balance {
                 .collect()
         };
         for (shape, grid) in made {
-            let whole = shape.columns(&motion).iter().map(|column| rms(&motion.pick(column))).fold(0.0, f64::max);
-            let through = grid.iter().map(|column| rms(column)).fold(0.0, f64::max);
-            if !(through > LEAST_PASSED * whole && through > 0.0) {
-                hidden.push(shape.effect());
-                continue;
-            }
-            // a column that is noise of the motion regresses on that of the acceleration
-            if noise_of(&shape, &motion, model) > MOST_NOISE * through {
+            if !shows(&shape, &grid, &motion, model) {
                 hidden.push(shape.effect());
                 continue;
             }
@@ -144,8 +163,8 @@ impl Balance {
         let mut grams = Grams::new(&columns, &target, &motion.block);
         candidates.retain(|candidate| {
             let released = candidate.shape == Shape::Scale || NOMINAL.contains(&candidate.shape);
-            let base: Vec<usize> = (0..3).collect();
-            let kept = candidate.columns.iter().map(|&column| grams.keeps(column, &base)).fold(0.0, f64::max);
+            let parameters: Vec<usize> = (0..NOMINAL.len()).collect();
+            let kept = candidate.columns.iter().map(|&column| grams.keeps(column, &parameters)).fold(0.0, f64::max);
             let disguised = needed_of.as_ref().filter(|_| candidate.shape.hangs_on_effort()).is_some_and(|others| {
                 let own = candidate.columns.iter().map(|&column| columns[column].clone());
                 own.map(|column| kept_of(column, others, &motion)).fold(0.0, f64::max) < LEAST_ITS_OWN
@@ -161,12 +180,12 @@ impl Balance {
         hidden.sort_unstable();
         hidden.dedup();
         hidden.retain(|effect| !candidates.iter().any(|candidate| candidate.shape.effect() == *effect));
-        set_priors(&mut grams, model, rest, &motion, 0);
+        set_priors(&mut grams, model, &base, rest, &motion, 0);
         let floor_square = motion.floor.powi(2) * target.len() as f64;
         let effort_square = effort.iter().map(|u| u * u).sum();
         let slip = slip(&motion, parameters, &columns, &candidates);
         let problem = Problem {
-            base: vec![0, 1, 2],
+            base: (0..base.len()).collect(),
             candidates,
             grams,
             floor_square,
@@ -176,7 +195,7 @@ impl Balance {
             slip,
             within: within(model, parameters),
         };
-        Self { motion, target, effort, needs, columns, problem, hidden, dead_zone_is_friction }
+        Self { motion, target, effort, needs, columns, base, problem, hidden, dead_zone_is_friction }
     }
 
     /// Searches, takes the priors from what is then left, refines the shapes, and searches again. Nothing is found in what
@@ -189,7 +208,7 @@ impl Balance {
             self.problem.floor_square = self.motion.floor.powi(2) * residual.len() as f64;
             let rest = rms(&residual);
             let lag = correlation(&residual);
-            set_priors(&mut self.problem.grams, model, rest, &self.motion, lag);
+            set_priors(&mut self.problem.grams, model, &self.base, rest, &self.motion, lag);
             self.refine(&best.members);
             best = self.problem.search(best.members);
         }
@@ -271,6 +290,13 @@ fn kept_of(column: Vec<f64>, others: &[Vec<f64>], motion: &Motion) -> f64 {
     Grams::new(&all, &all[others.len()], &motion.block).keeps(others.len(), &beside)
 }
 
+/// Whether a column passes the band, and is no noise of the motion: that regresses on that of the acceleration.
+fn shows(shape: &Shape, grid: &[Vec<f64>], motion: &Motion, model: &AxisModel) -> bool {
+    let whole = shape.columns(motion).iter().map(|column| rms(&motion.pick(column))).fold(0.0, f64::max);
+    let through = grid.iter().map(|column| rms(column)).fold(0.0, f64::max);
+    through > LEAST_PASSED * whole && through > 0.0 && noise_of(shape, motion, model) <= MOST_NOISE * through
+}
+
 /// Noise that the motion brings into a column of its higher derivatives.
 fn noise_of(shape: &Shape, motion: &Motion, model: &AxisModel) -> f64 {
     match shape {
@@ -320,12 +346,18 @@ pub(super) fn correlation(residual: &[f64]) -> usize {
         .unwrap_or(200)
 }
 
-/// Priors of the nominal parameters: their tolerance, against the noise as correlated as it is.
-fn set_priors(grams: &mut Grams, model: &AxisModel, rest: f64, motion: &Motion, lag: usize) {
+/// By how much effort and motion are read apart, as a standard deviation.
+fn apart_s(motion: &Motion) -> f64 {
+    APART_S.max(APART_ROWS * motion.period_s)
+}
+
+/// Priors of what stands in every balance: tolerances of the nominal parameters, and moments of reading apart, against the
+/// noise as correlated as it is.
+fn set_priors(grams: &mut Grams, model: &AxisModel, base: &[Shape], rest: f64, motion: &Motion, lag: usize) {
     let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
     let variance = rest.max(motion.floor).powi(2) * (1 + 2 * lag) as f64;
-    for (place, parameter) in nominal(model).iter().enumerate() {
-        let deviation = tolerance[place] * parameter;
+    let parameters = tolerance.iter().zip(nominal(model)).map(|(tolerance, parameter)| tolerance * parameter);
+    for (place, deviation) in parameters.chain([apart_s(motion)]).enumerate().take(base.len()) {
         let known = 1e9 * grams.power(place).max(1e-300);
         grams.precision[place] = if deviation > 0.0 { (variance / (deviation * deviation)).min(known) } else { known };
     }

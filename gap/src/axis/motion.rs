@@ -80,6 +80,8 @@ pub(super) struct Motion {
     /// Effort that the parameters alone need: for effects that hang on the effort.
     pub(super) needed: Vec<f64>,
     pub(super) auxiliary: Vec<(String, Vec<f64>)>,
+    /// What each is counted from as a gain: its mean where it stays away from zero, as a bus voltage does.
+    pub(super) references: Vec<f64>,
     /// Further smoothing of what is already smoothed, and both together.
     pub(super) rest: Kernel,
     pub(super) whole: Kernel,
@@ -105,6 +107,16 @@ pub(super) struct Motion {
     /// Share of the rows at rest; whether the axis stands all the time.
     pub(super) at_rest: f64,
     pub(super) stands: bool,
+    /// Whether effort and motion may have been read at moments apart.
+    pub(super) apart: bool,
+}
+
+/// Mean of a channel that goes up and down by less than that; zero of one that comes and goes.
+fn reference(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let high = values.iter().fold(f64::MIN, |high, value| high.max(*value));
+    let low = values.iter().fold(f64::MAX, |low, value| low.min(*value));
+    if high - low < mean.abs() { mean } else { 0.0 }
 }
 
 impl Motion {
@@ -218,6 +230,7 @@ impl Motion {
             nominal: [model.inertia, model.viscous, model.coulomb],
             needed: vec![0.0; v.len()],
             auxiliary: log.auxiliary.clone(),
+            references: log.auxiliary.iter().map(|(_, values)| reference(values)).collect(),
             q,
             v,
             a,
@@ -239,6 +252,7 @@ impl Motion {
             acceleration_noise: noise_at(band_hz),
             at_rest,
             stands,
+            apart: !stands,
         }
     }
 

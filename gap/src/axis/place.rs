@@ -3,7 +3,6 @@
 use gimbal_model_file::AxisModel;
 
 use super::balance::Balance;
-use super::library::NOMINAL;
 use super::motion::Motion;
 use super::plain::nominal;
 use super::search::Set;
@@ -123,7 +122,7 @@ pub(super) fn friction_curve(balance: &Balance, best: &Set, drawn: &[Vec<f64>], 
     let friction: Vec<bool> = columns
         .iter()
         .map(|&column| match balance.problem.base.iter().position(|base| *base == column) {
-            Some(place) => NOMINAL[place].block() == "friction",
+            Some(place) => balance.base[place].block() == "friction",
             None => best.members.iter().any(|&member| {
                 let candidate = &balance.problem.candidates[member];
                 candidate.columns.contains(&column) && candidate.shape.block() == "friction"

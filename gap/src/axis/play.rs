@@ -40,6 +40,7 @@ const NOISES: f64 = 4.0;
 /// Friction over inertia of the load, over that of the whole axis.
 const SLOWINGS: [f64; 3] = [0.3, 1.0, 3.0];
 const MOST_SLOWED: f64 = 3.0;
+const NEAR_MOST: f64 = 0.95;
 /// Sides: their natural frequency over the band's edge, and how they damp.
 const STIFF: [f64; 2] = [0.7, 2.5];
 const DAMPINGS: [f64; 2] = [0.2, 0.5];
@@ -82,7 +83,12 @@ impl Play {
 
     /// Whether its load is more than friction: of a light one with much of it, a play is what friction does at a reversal.
     fn is_likely(&self, m: &Motion) -> bool {
-        self.slowing * m.nominal[0] <= MOST_SLOWED * m.nominal[2]
+        self.slowed(m) <= MOST_SLOWED
+    }
+
+    /// Friction over inertia of the load, over that of the whole axis.
+    fn slowed(&self, m: &Motion) -> f64 {
+        self.slowing * m.nominal[0] / m.nominal[2].max(1e-300)
     }
 
     /// The likely play about this one that costs least, its parameters one after the other, twice.
@@ -123,10 +129,12 @@ pub(super) fn plays(motion: &Motion, target: &[f64], base: &[Vec<f64>]) -> Vec<S
     });
     let nearer = |(level, play): (usize, Play)| {
         let nearest = levels[level..].iter().fold(play, |play, level| play.refined(motion, |play| -level.gain(play)));
-        (if nearest.is_likely(motion) { sharpest.gain(nearest) } else { 0.0 }, nearest)
+        // one that would be lighter if it might has no load
+        (if nearest.slowed(motion) < NEAR_MOST * MOST_SLOWED { sharpest.gain(nearest) } else { 0.0 }, nearest)
     };
     let refined: Vec<(f64, Play)> = scanned.collect::<Vec<_>>().into_par_iter().map(nearer).collect();
-    apart(refined, OFFERED, APART, width).into_iter().map(Shape::Backlash).collect()
+    let gaining = refined.into_iter().filter(|(gain, _)| *gain > 0.0).collect();
+    apart(gaining, OFFERED, APART, width).into_iter().map(Shape::Backlash).collect()
 }
 
 /// What is scanned.

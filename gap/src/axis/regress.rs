@@ -132,6 +132,14 @@ impl Grams {
         Cholesky::new(matrix).map_or(1.0, |cholesky| 1.0 - right.dot(&cholesky.solve(&right))).clamp(0.0, 1.0)
     }
 
+    /// Power of columns times amplitudes, each by itself and all together.
+    pub(super) fn powers(&self, columns: &[usize], amplitudes: &[f64]) -> [f64; 2] {
+        let pairs = || columns.iter().zip(amplitudes);
+        let with =
+            |(&row, a): (&usize, &f64)| pairs().map(|(&column, b)| a * b * self.total[(row, column)]).sum::<f64>();
+        [pairs().map(|(&column, a)| a * a * self.power(column)).sum(), pairs().map(with).sum()]
+    }
+
     /// Power of a column.
     pub(super) fn power(&self, column: usize) -> f64 {
         self.total[(column, column)]

@@ -60,6 +60,11 @@ pub(super) struct Slip {
     pub(super) columns: Vec<Vec<f64>>,
 }
 
+/// Power of waves of the position, each by itself, over that of all together, from which on they are no waves: a function of a
+/// place is drawn by waves that cancel elsewhere.
+const CANCEL: f64 = 30.0;
+/// Share of the effort's power that is rounding.
+const NOTHING: f64 = 1e-9;
 /// Share of the rows of slip at which fitted friction may drive.
 const MAY_DRIVE: f64 = 0.02;
 
@@ -139,13 +144,25 @@ impl Problem {
                 nominal[index] * (1.0 + of(&Shape::Scale)) + fit[index] + of(&NOMINAL[index])
             };
             // an effort that follows the rate with the sign of a drive is the loop's own law, not friction
-            if (0..3).any(|index| total(index) < 0.0) {
+            let drives = |index: usize| {
+                let total = total(index);
+                total < 0.0 && total.powi(2) * self.grams.power(index) > NOTHING * self.effort_square
+            };
+            if (0..3).any(drives) {
                 return false;
             }
             level = total(2);
             if !self.slip.brakes(columns, &fit) {
                 return false;
             }
+        }
+        let of_place = |shape: &Shape| matches!(shape, Shape::Ripple { .. } | Shape::Spring);
+        let waves = members.iter().filter(|&&member| of_place(&self.candidates[member].shape));
+        let waves: Vec<usize> = waves.flat_map(|&member| self.candidates[member].columns.iter().copied()).collect();
+        let sizes: Vec<f64> = waves.iter().map(|&column| at(column)).collect();
+        let [apart, together] = self.grams.powers(&waves, &sizes);
+        if apart > CANCEL * together.max(0.0) {
+            return false;
         }
         members.iter().all(|&member| {
             let own: Vec<f64> = self.candidates[member].columns.iter().map(|&column| at(column)).collect();

@@ -4,7 +4,7 @@ use gimbal_model_file::AxisModel;
 
 use super::balance::Balance;
 use super::judge::{Shrunk, by_block, shrunk};
-use super::library::{NOMINAL, Shape};
+use super::library::Shape;
 use super::motion::BLOCKS;
 use super::plain::nominal;
 use super::ready::ready;
@@ -31,7 +31,11 @@ pub(super) fn score(
     }
     motion.needed = balance.needs.at(&motion);
     (motion.middle, motion.size) = (balance.motion.middle, balance.motion.size);
-    let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
+    for ((name, _), own) in motion.auxiliary.iter().zip(&mut motion.references) {
+        let fitted = balance.motion.auxiliary.iter().position(|(other, _)| other == name);
+        *own = fitted.map_or(*own, |place| balance.motion.references[place]);
+    }
+    let base: Vec<Vec<f64>> = balance.base.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
     let parameters = nominal(model);
     let effort = motion.raw(&motion.effort);
     let before: Vec<f64> =

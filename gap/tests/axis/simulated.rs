@@ -188,20 +188,21 @@ fn position_alone() -> String {
     MODEL.replace("velocity = { name = \"v\", unit = \"m/s\" }\n", "")
 }
 
-/// A sweep from 0.3 to 6 Hz of the nominal axis, its drive late by a lag, seen by an encoder.
-fn swept(lag_s: f64, step_m: f64) -> String {
+/// A sweep from 0.3 to 6 Hz of the nominal axis with such a Coulomb friction, seen by an encoder: its effort as it is made of the
+/// time, of what the motion needs, and of the slope of that.
+fn swept(coulomb_n: f64, step_m: f64, effort_n: impl Fn(f64, f64, f64) -> f64) -> String {
     let angle = |t: f64| std::f64::consts::TAU * t * (0.3 + 5.7 * t / 48.0);
     let hz = |t: f64| 0.3 + 5.7 * t / 24.0;
     let position = |t: f64| 0.04 / hz(t) / (1.0 + 0.5 * hz(t)) * angle(t).sin();
     let needed = |t: f64| {
         let (before, now, after) = (position(t - 1e-4), position(t), position(t + 1e-4));
         let (rate, acceleration) = ((after - before) / 2e-4, (after - 2.0 * now + before) / 1e-8);
-        80.0 * acceleration + 150.0 * rate + 25.0 * (rate / 1e-3).tanh()
+        80.0 * acceleration + 150.0 * rate + coulomb_n * (rate / 1e-3).tanh()
     };
     let mut out = String::from("t,x,v,f,code\n");
     for row in 0..24_000 {
         let t = 1e-3 * f64::from(row);
-        let effort = needed(t) + lag_s * (needed(t + 1e-4) - needed(t - 1e-4)) / 2e-4;
+        let effort = effort_n(t, needed(t), (needed(t + 1e-4) - needed(t - 1e-4)) / 2e-4);
         let rate = (position(t + 1e-4) - position(t - 1e-4)) / 2e-4;
         out.push_str(&format!("{t:.4},{:.9},{rate:.3},{effort:.3},0\n", step_m * (position(t) / step_m).round()));
     }
@@ -214,7 +215,7 @@ fn cross_a_lag_that_noise_hides_in_the_wide_band_is_told_in_a_narrower_one() {
     // there, and in a sweep a lag goes with time
     let model = AxisModel::parse(&position_alone(), "axis.toml").expect("reads").expect("an axis");
     for step_m in [5e-6, 2e-5] {
-        let logged = swept(4.5e-3, step_m);
+        let logged = swept(25.0, step_m, |_, needed, slope| needed + 4.5e-3 * slope);
         let first = logged.lines().nth(1).expect("rows");
         let cells: Vec<&str> = first.split(',').collect();
         let logged = logged.replacen(first, &[cells[0], cells[1], cells[2], "90000.0", cells[4]].join(","), 1);
@@ -222,6 +223,40 @@ fn cross_a_lag_that_noise_hides_in_the_wide_band_is_told_in_a_narrower_one() {
         let diagnosis = diagnose(read, &model, Vec::new());
         assert_eq!(names(&diagnosis), ["motor_lag"], "{}", text(&diagnosis));
         assert!((value(&diagnosis, "motor_lag") / 4.5e-3 - 1.0).abs() < 0.15, "{}", text(&diagnosis));
+    }
+}
+
+/// A swept axis by a model file that differs in a line.
+fn diagnosed_sweep(logged: &str, line: &str, becomes: &str) -> AxisDiagnosis {
+    let model = position_alone().replace("effort_held = true\n", "").replace(line, becomes);
+    let model = AxisModel::parse(&model, "axis.toml").expect("reads").expect("an axis");
+    let read = AxisLog::read(logged.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
+    diagnose(read, &model, Vec::new())
+}
+
+#[test]
+fn cross_effort_and_motion_read_a_part_of_a_row_apart_are_no_effect() {
+    for apart_s in [-2.5e-4, 2.5e-4] {
+        let logged = swept(25.0, 1e-7, |_, needed, slope| needed + apart_s * slope);
+        let diagnosis = diagnosed_sweep(&logged, "", "");
+        assert_eq!(diagnosis.verdict.name(), "no_gap", "{}", text(&diagnosis));
+    }
+}
+
+#[test]
+fn cross_a_dead_zone_larger_than_friction_is_no_friction() {
+    let logged = swept(25.0, 1e-7, |_, needed, _| needed + 40.0 * (needed / 0.5).tanh());
+    let diagnosis = diagnosed_sweep(&logged, "", "");
+    assert_eq!(names(&diagnosis), ["dead_zone"], "{}", text(&diagnosis));
+    assert!((value(&diagnosis, "dead_zone") / 40.0 - 1.0).abs() < 0.05, "{}", text(&diagnosis));
+}
+
+#[test]
+fn cross_an_axis_that_has_no_coulomb_friction_may_have_effects() {
+    for sign in [-1.0, 1.0] {
+        let logged = swept(0.0, 1e-7, |t, needed, _| needed + sign * 20.0 * (1.0 - (-t / 6.0).exp()));
+        let diagnosis = diagnosed_sweep(&logged, "coulomb = 25.0", "coulomb = 0.0");
+        assert_eq!(names(&diagnosis), ["bias_drift"], "{}", text(&diagnosis));
     }
 }
 

@@ -11,9 +11,6 @@ use crate::axis::search::Candidate;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(in crate::axis) const BEYOND: f64 = 1.15;
 
-/// A drive that answers within this [s], or a row, has no lag to be told of.
-const NO_LAG_S: f64 = 3e-4;
-
 /// Nominal parameters beyond what is known of them, by their places.
 pub(super) fn beyond(
     balance: &Balance,
@@ -30,33 +27,7 @@ pub(super) fn beyond(
         let unsure = errors[index] + more * nominal(model)[index];
         !within(model, index, shift, unsure)
     };
-    let mut beyond: Vec<usize> = (0..3).filter(|&index| worth(index) && outside(index, shifts[index])).collect();
-    if !beyond.is_empty()
-        && let Some(beside) = beside_a_lag(balance, members)
-    {
-        // a lag is known to a factor of two: what the effort needs, which it is of, hangs on the parameters
-        let at = |index: usize, lags: f64| shifts[index] + lags * (beside[index] - shifts[index]);
-        beyond.retain(|&index| {
-            let one_way = shifts[index] * at(index, 2.0) > 0.0;
-            one_way && [1.0, 2.0].iter().all(|lags| outside(index, at(index, *lags)))
-        });
-    }
-    beyond
-}
-
-/// Shifts of the nominal parameters beside a lag of the drive that is too short to be one: what answers late by T seems to have
-/// less viscous friction by the square of the frequency, `B - w^2 J T`.
-fn beside_a_lag(balance: &Balance, members: &[usize]) -> Option<[f64; 3]> {
-    let candidates = &balance.problem.candidates;
-    let lag = candidates.iter().position(|candidate| candidate.shape == Shape::Lag)?;
-    if members.contains(&lag) {
-        return None;
-    }
-    let with = [members, &[lag]].concat();
-    let (columns, amplitudes) = balance.fit(&with);
-    let late_s = amplitudes[columns.iter().position(|column| *column == candidates[lag].columns[0])?];
-    let short = (0.0..NO_LAG_S.max(balance.motion.period_s)).contains(&late_s);
-    short.then(|| balance.shifts(&with, &columns, &amplitudes))
+    (0..3).filter(|&index| worth(index) && outside(index, shifts[index])).collect()
 }
 
 /// By how much a motor whose constant goes up and down needs more, whatever for:

@@ -44,7 +44,11 @@ impl Shape {
             Self::Hysteresis { width } => vec![play_state(&m.q, width)],
             Self::Ripple { wave_number } => waves(wave_number, &|_| 1.0),
             Self::MotorRipple { wave_number } => waves(wave_number, &|i| m.needed[i]),
-            Self::DeadZone => vec![by(&|i| (m.needed[i] / (0.02 * size)).clamp(-1.0, 1.0))],
+            // what the effort needed is of has friction in the place of the dead zone
+            Self::DeadZone => {
+                let effort = m.whole.apply(&m.effort);
+                vec![by(&|i| (effort[i] / (0.02 * size)).clamp(-1.0, 1.0))]
+            }
             Self::TorqueCurve => vec![by(&|i| (m.needed[i] / size).powi(3))],
             Self::RateDelay => vec![m.a.clone()],
             Self::Lag => vec![m.derivative(&m.whole.apply(&m.needed))],
@@ -57,7 +61,9 @@ impl Shape {
             Self::Load { channel } => vec![m.auxiliary[channel].1.clone()],
             Self::LoadFriction { channel } => vec![by(&|i| m.s[i] * m.auxiliary[channel].1[i])],
             Self::LoadRipple { channel, wave_number } => waves(wave_number, &|i| m.auxiliary[channel].1[i]),
-            Self::LoadGain { channel } => vec![by(&|i| m.needed[i] * m.auxiliary[channel].1[i])],
+            Self::LoadGain { channel } => {
+                vec![by(&|i| m.needed[i] * (m.auxiliary[channel].1[i] - m.references[channel]))]
+            }
         }
     }
 
