@@ -10,14 +10,11 @@ use super::plain::{Needs, columns as columns_of, nominal, nominally, rounded};
 use super::play::plays;
 use super::regress::Grams;
 use super::resonance::modes;
-use super::search::{Candidate, LEAST_SHARE, Problem, Set, Slip};
+use super::search::{Candidate, LEAST_SHARE, Problem, Set};
+use super::slip::Slip;
 use super::tried::shapes;
 use super::waves::waves;
 
-/// Rows at which friction is looked at.
-const SLIP_ROWS: usize = 400;
-/// Slip is steady where its direction is smoothed by no more than this.
-const STEADY: f64 = 0.97;
 /// A column must keep this share of its power beside the nominal parameters, and this much through the band.
 const LEAST_KEPT: f64 = 1e-4;
 const LEAST_PASSED: f64 = 0.02;
@@ -123,10 +120,12 @@ impl Balance {
         let target: Vec<f64> = (0..effort.len())
             .map(|row| effort[row] - (0..3).map(|place| parameters[place] * columns[place][row]).sum::<f64>())
             .collect();
-        let apart = Shape::Lag.on_grid(&motion);
-        if motion.apart && shows(&Shape::Lag, &apart, &motion, model) {
-            base.push(Shape::Lag);
-            columns.extend(apart);
+        if motion.apart {
+            let apart = Shape::Lag.on_grid(&motion);
+            if shows(&Shape::Lag, &apart, &motion, model) {
+                base.push(Shape::Lag);
+                columns.extend(apart);
+            }
         }
         let mut candidates: Vec<Candidate> = Vec::new();
         let mut hidden: Vec<&'static str> = Vec::new();
@@ -183,7 +182,7 @@ impl Balance {
         set_priors(&mut grams, model, &base, rest, &motion, 0);
         let floor_square = motion.floor.powi(2) * target.len() as f64;
         let effort_square = effort.iter().map(|u| u * u).sum();
-        let slip = slip(&motion, parameters, &columns, &candidates);
+        let slip = Slip::new(&motion, parameters, &columns, &candidates);
         let problem = Problem {
             base: (0..base.len()).collect(),
             candidates,
@@ -304,28 +303,6 @@ fn noise_of(shape: &Shape, motion: &Motion, model: &AxisModel) -> f64 {
         Shape::Flexible => motion.derivative_noise(4),
         _ => 0.0,
     }
-}
-
-/// Friction at rows of steady slip, away from reversals and from what smoothing reaches of them: of the nominal model,
-/// and of the columns of friction.
-fn slip(motion: &Motion, parameters: [f64; 3], columns: &[Vec<f64>], candidates: &[Candidate]) -> Slip {
-    let mut friction = vec![false; columns.len()];
-    friction[1..3].fill(true);
-    for candidate in candidates.iter().filter(|candidate| candidate.shape.brakes()) {
-        candidate.columns.iter().for_each(|&column| friction[column] = true);
-    }
-    let thin = (motion.rows.len() / SLIP_ROWS).max(1);
-    let steady = |place: &usize| columns[2][*place].abs() > STEADY;
-    let rows = (0..motion.rows.len()).step_by(thin).filter(steady);
-    let mut slip = Slip { rows: rows.map(|place| (place, columns[2][place].signum())).collect(), ..Slip::default() };
-    let [viscous, coulomb] = [slip.along(&columns[1]), slip.along(&columns[2])];
-    slip.nominal = viscous.iter().zip(&coulomb).map(|(v, s)| parameters[1] * v + parameters[2] * s).collect();
-    slip.columns = columns
-        .iter()
-        .zip(&friction)
-        .map(|(column, friction)| if *friction { slip.along(column) } else { Vec::new() })
-        .collect();
-    slip
 }
 
 /// Shifts of the nominal parameters that are none.

@@ -15,7 +15,8 @@ use super::judge::{Found, Parameter, Shrunk, deviation, label, parameters, shrun
 use super::library::{Shape, rms};
 use super::motion::Motion;
 use super::regress::{Draws, Grams};
-use super::search::{Candidate, Problem, Slip};
+use super::search::{Candidate, Problem};
+use super::slip::Slip;
 use super::table::AxisLog;
 
 /// What the law shows.

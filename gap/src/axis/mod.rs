@@ -26,6 +26,7 @@ mod regress;
 mod report;
 mod resonance;
 mod search;
+mod slip;
 mod smooth;
 mod table;
 mod tried;

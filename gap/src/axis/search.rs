@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::library::{NOMINAL, Shape};
 use super::regress::{FOLDS, Grams, fold_of};
+use super::slip::Slip;
 
 /// One effect with fixed shape parameters.
 #[derive(Debug, Clone)]
@@ -49,45 +50,11 @@ const MOST: usize = 10;
 const ASYMMETRIC: f64 = 1.03;
 /// Candidates of which all pairs are tried.
 const PAIRED: usize = 48;
-
-/// Rows of steady slip, and what each column adds to friction there, along the motion; other columns stand empty.
-#[derive(Debug, Default)]
-pub(super) struct Slip {
-    /// Rows of the grid, and the direction there.
-    pub(super) rows: Vec<(usize, f64)>,
-    /// Friction of the nominal model.
-    pub(super) nominal: Vec<f64>,
-    pub(super) columns: Vec<Vec<f64>>,
-}
-
 /// Power of waves of the position, each by itself, over that of all together, from which on they are no waves: a function of a
 /// place is drawn by waves that cancel elsewhere.
 const CANCEL: f64 = 30.0;
 /// Share of the effort's power that is rounding.
 const NOTHING: f64 = 1e-9;
-/// Share of the rows of slip at which fitted friction may drive.
-const MAY_DRIVE: f64 = 0.02;
-
-impl Slip {
-    /// A column along the motion.
-    pub(super) fn along(&self, column: &[f64]) -> Vec<f64> {
-        self.rows.iter().map(|&(place, direction)| column[place] * direction).collect()
-    }
-
-    /// Whether friction brakes. What drives is the loop's own answer, for its effort falls with the rate:
-    ///
-    /// ```text
-    /// friction(q, v, t) sgn v >= 0
-    /// ```
-    fn brakes(&self, columns: &[usize], amplitudes: &[f64]) -> bool {
-        let mut friction = self.nominal.clone();
-        for (&column, amplitude) in columns.iter().zip(amplitudes) {
-            friction.iter_mut().zip(&self.columns[column]).for_each(|(sum, value)| *sum += amplitude * value);
-        }
-        let drives = friction.iter().filter(|along| **along < 0.0).count();
-        drives as f64 <= MAY_DRIVE * friction.len() as f64
-    }
-}
 
 /// Sums over the blocks of each fold.
 fn folds(blocks: &[f64]) -> [f64; FOLDS] {
