@@ -132,7 +132,7 @@ pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, left: impl Fn(
             let exact = sets[other].effects.iter().all(|effect| EXACT.contains(effect));
             let least = if exact { 0.0 } else { LEAST_SHARE * excess };
             let worthless = is_part(&sets[other].effects, &sets[index].effects) && left(other) - left(index) < least;
-            let most = sets[other].nats - sets[other].cost + sets[index].cost - 1.0;
+            let most = sets[other].nats - sets[other].rare + sets[index].rare - 1.0;
             if worthless && sets[index].nats > most {
                 sets[index].nats = most;
             }
@@ -215,7 +215,8 @@ mod tests {
     use super::{Weighed, against_each_other, worth_their_more};
 
     fn set(effects: &[&'static str], nats: f64) -> Weighed {
-        Weighed { effects: effects.to_vec(), fit: None, nats, cost: 18.0 * effects.len() as f64, rare: 8.0 }
+        let more = effects.len() as f64;
+        Weighed { effects: effects.to_vec(), fit: None, nats, cost: 18.0 * more, rare: 8.0 * more }
     }
 
     #[test]
@@ -226,6 +227,7 @@ mod tests {
             let mut sets = [set(&[first], 1e5), set(&[first, "viscous_friction"], 1e5 + 180.0)];
             worth_their_more(&mut sets, 1e6, |index| left[index]);
             assert_eq!(sets[1].nats - sets[1].cost > sets[0].nats - sets[0].cost, stays, "beside {first}");
+            assert_eq!(sets[1].nats - sets[1].rare > sets[0].nats - sets[0].rare, stays, "beside {first}, by odds");
         }
     }
 
