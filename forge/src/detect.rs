@@ -7,7 +7,9 @@
 //! y: the logged channels of the record without its first second. W: one over the amplitude spectrum of the noise
 //! floor, which is the instruments' noise plus the noise of the logged inputs carried through the plant. S: finite
 //! differences of y by the nominal parameters; a parameter may move from where it truly is to either end of its
-//! tolerance. The smallest detectable size is the one with d = 5.
+//! tolerance. Where a difference is large, y(without) is taken anew there, as y is no line in its parameters. The smallest detectable size is the one with d = 5.
+
+use std::rc::Rc;
 
 use realfft::RealFftPlanner;
 
@@ -144,10 +146,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Directions with their products, for many least squares.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Projection<'a> {
     nuisances: Vec<&'a Nuisance>,
-    products: Vec<Vec<f64>>,
+    /// How far each may still move.
+    limits: Vec<(f64, f64)>,
+    products: Rc<Vec<Vec<f64>>>,
 }
 
 impl<'a> Projection<'a> {
@@ -156,7 +160,21 @@ impl<'a> Projection<'a> {
     pub fn new(nuisances: Vec<&'a Nuisance>) -> Self {
         let products =
             nuisances.iter().map(|a| nuisances.iter().map(|b| dot(&a.column, &b.column)).collect()).collect();
-        Self { nuisances, products }
+        let limits = nuisances.iter().map(|nuisance| nuisance.limits).collect();
+        Self { nuisances, limits, products: Rc::new(products) }
+    }
+
+    /// The same from where the directions have been moved to.
+    #[must_use]
+    pub fn moved(&self, moves: &[f64]) -> Self {
+        let limits = self.limits.iter().zip(moves).map(|((least, most), by)| (least - by, most - by)).collect();
+        Self { limits, ..self.clone() }
+    }
+
+    /// The directions.
+    #[must_use]
+    pub fn nuisances(&self) -> &[&'a Nuisance] {
+        &self.nuisances
     }
 
     /// Norm of what is left of a difference after the directions have taken from it what they can within limits.
@@ -168,6 +186,13 @@ impl<'a> Projection<'a> {
     /// The same with directions beside that have no limits.
     #[must_use]
     pub fn left_with(&self, difference: &[f64], free: &[&[f64]]) -> f64 {
+        self.closest(difference, free).1
+    }
+
+    /// How far the directions, and those beside that have no limits, move to take most of a difference; and the norm of
+    /// what is left of it.
+    #[must_use]
+    pub fn closest(&self, difference: &[f64], free: &[&[f64]]) -> (Vec<f64>, f64) {
         let fixed = self.nuisances.len();
         let count = fixed + free.len();
         let column = |index: usize| if index < fixed { &self.nuisances[index].column[..] } else { free[index - fixed] };
@@ -187,8 +212,7 @@ impl<'a> Projection<'a> {
                 let others: f64 =
                     products[index].iter().zip(&moves).map(|(a, b)| a * b).sum::<f64>() - own * moves[index];
                 let best = (pulls[index] - others) / own;
-                let (least, most) =
-                    if index < fixed { self.nuisances[index].limits } else { (f64::NEG_INFINITY, f64::INFINITY) };
+                let (least, most) = if index < fixed { self.limits[index] } else { (f64::NEG_INFINITY, f64::INFINITY) };
                 let moved = best.clamp(least, most);
                 largest = largest.max((moved - moves[index]).abs() * own.sqrt());
                 moves[index] = moved;
@@ -204,7 +228,7 @@ impl<'a> Projection<'a> {
                 left += moves[a] * moves[b] * products[a][b];
             }
         }
-        left.max(0.0).sqrt()
+        (moves, left.max(0.0).sqrt())
     }
 }
 

@@ -87,16 +87,17 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
     }
     let projection = bench.projection();
     let alone: Vec<Vec<f64>> = effects.iter().map(|(effect, size, _)| bench.change(effect, *size)).collect();
+    let d_alone: Vec<f64> = effects.iter().map(|(effect, size, _)| bench.d_of(effect, *size, &projection)).collect();
     // what cannot be seen has no need of what it could be taken for
-    let faint = effects.len() == 1 && projection.left_of(&alone[0]) < DETECTABLE;
+    let faint = effects.len() == 1 && d_alone[0] < DETECTABLE;
     let tangents = if faint { Vec::new() } else { bench.tangents() };
     effects
         .iter()
         .enumerate()
         .map(|(place, (effect, size, detectable))| {
             let others = || alone.iter().enumerate().filter(|(index, _)| *index != place);
-            let marginal = if effects.len() == 1 {
-                alone[place].clone()
+            let (with, without) = if effects.len() == 1 {
+                bench.beyond(effect, *size)
             } else {
                 let mut without = bench.base.clone();
                 for (index, (other, other_size, _)) in effects.iter().enumerate() {
@@ -105,9 +106,10 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                         other.apply(size, &bench.scale, &mut without);
                     }
                 }
-                bench.between(world, &without)
+                (world.clone(), without)
             };
             let beside: Vec<&[f64]> = others().map(|(_, column)| &column[..]).collect();
+            let (marginal, projection) = bench.left_by_moving(&with, &without, &projection, &beside);
             let among: Vec<&(&str, Vec<f64>)> = tangents.iter().filter(|(name, _)| *name != effect.name).collect();
             // below the detectable size nothing can be told from anything
             let seen = projection.left_with(&marginal, &beside) >= DETECTABLE;
@@ -134,7 +136,7 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                 size: *size,
                 detectable_size: *detectable,
                 multiple: size / detectable,
-                d: of(projection.left_of(&alone[place])),
+                d: d_alone[place],
                 d_beside_others: of(projection.left_with(&marginal, &beside)),
                 d_beyond_library: of(projection.left_with(&marginal, &all)),
                 equivalents,

@@ -18,12 +18,18 @@ const QUANTISATION: &str = "pickoff_quantisation";
 const RANDOM_TORQUE: &str = "coloured_torque";
 /// Share of a tolerance over which a sensitivity is taken.
 const SENSITIVITY_SHARE: f64 = 0.3;
+/// How often parameters move by their sensitivities to take a change from it, and norm from which on it needs that.
+const MOVES: usize = 6;
+const LARGE: f64 = 10.0 * DETECTABLE;
+/// Share by which what is left changes where they stand still.
+const STILL: f64 = 0.02;
 
 /// A scene with its undisturbed run, noise floor and sensitivities.
 pub(super) struct Bench<'a> {
     pub(super) scene: &'a Scene,
     pub(super) base: &'a World,
     pub(super) scale: Scale,
+    nominal: &'a Config,
     /// Integration steps between rows.
     steps: usize,
     loads: Loads,
@@ -37,6 +43,10 @@ pub(super) struct Bench<'a> {
     pickoff_rad: f64,
 }
 
+fn norm(column: &[f64]) -> f64 {
+    column.iter().map(|value| value * value).sum::<f64>().sqrt()
+}
+
 fn plus(a: &Outputs, b: &Outputs, sign: f64) -> Outputs {
     core::array::from_fn(|channel| a[channel].iter().zip(&b[channel]).map(|(x, y)| x + sign * y).collect())
 }
@@ -45,7 +55,7 @@ impl<'a> Bench<'a> {
     pub(super) fn new(
         scene: &'a Scene,
         base: &'a World,
-        nominal: &Config,
+        nominal: &'a Config,
         drift: &Drift,
         noise: &Noise,
         used: &[usize],
@@ -58,7 +68,7 @@ impl<'a> Bench<'a> {
     fn with_steps(
         scene: &'a Scene,
         base: &'a World,
-        nominal: &Config,
+        nominal: &'a Config,
         drift: &Drift,
         noise: &Noise,
         used: &[usize],
@@ -79,6 +89,7 @@ impl<'a> Bench<'a> {
             scene,
             base,
             scale: scene.scale(&samples),
+            nominal,
             steps,
             loads,
             samples,
@@ -132,8 +143,43 @@ impl<'a> Bench<'a> {
     }
 
     /// Whitened difference of two worlds.
-    pub(super) fn between(&self, with: &World, without: &World) -> Vec<f64> {
+    fn between(&self, with: &World, without: &World) -> Vec<f64> {
         self.whitener.difference(&self.seen(with), &self.seen(without))
+    }
+
+    /// What the nominal parameters leave of a difference that stands beside others, and what they may still do about it:
+    /// where it is large they move first, as it is no line in them.
+    pub(super) fn left_by_moving<'p>(
+        &self,
+        with: &World,
+        without: &World,
+        projection: &Projection<'p>,
+        beside: &[&[f64]],
+    ) -> (Vec<f64>, Projection<'p>) {
+        let shown = self.seen(with);
+        let (mut world, mut projection) = (without.clone(), projection.clone());
+        let mut difference = self.whitener.difference(&shown, &self.seen(&world));
+        for _ in 0..MOVES {
+            let (moves, left) = projection.closest(&difference, beside);
+            if left < DETECTABLE || norm(&difference) < LARGE {
+                break;
+            }
+            let mut there = world.clone();
+            for (nuisance, by) in projection.nuisances().iter().zip(&moves) {
+                drift::shift(&mut there, self.nominal, nuisance.name, *by);
+            }
+            let (next, after) = (projection.moved(&moves), self.whitener.difference(&shown, &self.seen(&there)));
+            let left_there = next.left_with(&after, beside);
+            // lines that lead astray
+            if left_there >= norm(&difference) {
+                break;
+            }
+            (world, projection, difference) = (there, next, after);
+            if (left_there - left).abs() < STILL * left {
+                break;
+            }
+        }
+        (difference, projection)
     }
 
     /// The undisturbed world with one effect.
@@ -165,12 +211,17 @@ impl<'a> Bench<'a> {
         size.min(drift::tolerance(effect.name))
     }
 
+    /// The world with an effect beyond that, and the one with what is no gap of it.
+    pub(super) fn beyond(&self, effect: &Effect, size: f64) -> (World, World) {
+        let inside = Self::no_gap(effect, size);
+        let without = if inside > 0.0 { self.world(effect, inside) } else { self.base.clone() };
+        (self.world(effect, size), without)
+    }
+
     /// Whitened change by an effect beyond that.
     pub(super) fn change(&self, effect: &Effect, size: f64) -> Vec<f64> {
-        match Self::no_gap(effect, size) {
-            none if none <= 0.0 => self.difference(&self.world(effect, size)),
-            inside => self.between(&self.world(effect, size), &self.world(effect, inside)),
-        }
+        let (with, without) = self.beyond(effect, size);
+        self.between(&with, &without)
     }
 
     /// d of what is no shape in time: how far its power stands out of the noise. Where a quantised pick-off is rounded to
@@ -187,11 +238,14 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn d_of(&self, effect: &Effect, size: f64, projection: &Projection<'_>) -> f64 {
+    /// d of an effect by itself.
+    pub(super) fn d_of(&self, effect: &Effect, size: f64, projection: &Projection<'_>) -> f64 {
         if let Some(d) = self.by_power(effect, size) {
             return d;
         }
-        let left = projection.left_of(&self.change(effect, size));
+        let (with, without) = self.beyond(effect, size);
+        let (difference, projection) = self.left_by_moving(&with, &without, projection, &[]);
+        let left = projection.left_of(&difference);
         if left.is_finite() { left } else { f64::INFINITY }
     }
 
@@ -275,6 +329,25 @@ impl<'a> Bench<'a> {
 mod tests {
     use super::*;
     use crate::excitation::Excitation;
+
+    #[test]
+    fn closed_form_parameters_within_their_tolerance_leave_nothing_however_they_bend_what_is_seen() {
+        let mut draw = Draw::new(&Draw::seed_of(32), 0);
+        let scene = Scene { track: Excitation::Manoeuvre.track(8000, None, &mut draw), before: 0 };
+        let nominal = Config::consistent();
+        let drift = Drift::draw(&mut draw, &[]);
+        let (base, noise) = (drift.world(&nominal), Noise::draw(&mut draw));
+        let bench = Bench::new(&scene, &base, &nominal, &drift, &noise, &[0, 1], &mut draw);
+        let mut with = base.clone();
+        for name in ["angular_momentum", "gyro_damping", "gimbal_inertia", "loop_gain", "friction_level"] {
+            drift::shift(&mut with, &nominal, name, 0.9 * drift::tolerance(name) - drift.of(name));
+        }
+        let projection = bench.projection();
+        let line = projection.left_of(&bench.between(&with, &base));
+        let (difference, moved) = bench.left_by_moving(&with, &base, &projection, &[]);
+        let left = moved.left_of(&difference);
+        assert!(line > DETECTABLE && left < 0.2 * DETECTABLE, "{line} {left}");
+    }
 
     #[test]
     fn cross_sizes_are_those_of_the_steps_of_the_logs() {

@@ -4,7 +4,7 @@ use gimbal_model_file::AxisModel;
 
 use super::balance::Balance;
 use super::judge::{Shrunk, by_block, shrunk};
-use super::library::Shape;
+use super::library::{NOMINAL, Shape};
 use super::motion::BLOCKS;
 use super::plain::nominal;
 use super::ready::ready;
@@ -35,21 +35,19 @@ pub(super) fn score(
         let fitted = balance.motion.auxiliary.iter().position(|(other, _)| other == name);
         *own = fitted.map_or(*own, |place| balance.motion.references[place]);
     }
-    let base: Vec<Vec<f64>> = balance.base.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
+    let base: Vec<Vec<f64>> = NOMINAL.iter().flat_map(|shape| shape.on_grid(&motion)).collect();
     let parameters = nominal(model);
     let effort = motion.raw(&motion.effort);
     let before: Vec<f64> =
         (0..effort.len()).map(|row| effort[row] - (0..3).map(|p| parameters[p] * base[p][row]).sum::<f64>()).collect();
+    // how far apart the moments are at which effort and motion are read is each log's own
     let (_, amplitudes) = balance.fit(&best.members);
+    let (of_base, mut of_effects) = amplitudes.split_at(balance.base.len());
     let mut after = before.clone();
-    let mut place = 0;
-    let mut take = |columns: &[Vec<f64>], after: &mut Vec<f64>| {
-        for column in columns {
-            after.iter_mut().zip(column).for_each(|(r, value)| *r -= amplitudes[place] * value);
-            place += 1;
-        }
+    let less = |after: &mut Vec<f64>, column: &[f64], amplitude: f64| {
+        after.iter_mut().zip(column).for_each(|(r, value)| *r -= amplitude * value);
     };
-    take(&base, &mut after);
+    base.iter().zip(of_base).for_each(|(column, amplitude)| less(&mut after, column, *amplitude));
     for &member in &best.members {
         let candidate = &balance.problem.candidates[member];
         let channel = match candidate.shape {
@@ -60,12 +58,12 @@ pub(super) fn score(
             _ => None,
         };
         let there = channel.is_none_or(|name| motion.auxiliary.iter().any(|(other, _)| other == name));
-        let columns = if there {
-            candidate.shape.on_grid(&motion)
-        } else {
-            vec![vec![0.0; after.len()]; candidate.columns.len()]
-        };
-        take(&columns, &mut after);
+        let (own, others) = of_effects.split_at(candidate.columns.len());
+        of_effects = others;
+        if there {
+            let columns = candidate.shape.on_grid(&motion);
+            columns.iter().zip(own).for_each(|(column, amplitude)| less(&mut after, column, *amplitude));
+        }
     }
     let mut counts = vec![0.0; BLOCKS];
     motion.block.iter().for_each(|&block| counts[block] += 1.0);

@@ -45,7 +45,7 @@ impl Search {
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
 /// What a fit that closes the gap leaves of the noise.
-const CLOSED: f64 = 1.02;
+pub(crate) const CLOSED: f64 = 1.02;
 /// What a fit takes away from where on the sensitivities without its effects mislead beside it.
 const FAR: f64 = 2e3;
 /// How often it is taken further at most, and what of its square it leaves as long as it gets there.

@@ -5,7 +5,7 @@ use gimbal_model_file::Tolerance;
 use super::against::against;
 use super::set::is_part;
 use super::stretch::carried_alone;
-use crate::fit::{Fit, Glimpse, Problem, Search, first_of_each, glimpses_beside};
+use crate::fit::{CLOSED, Fit, Glimpse, Problem, Search, first_of_each, glimpses_beside};
 use crate::library::{NAMED, releases};
 
 /// Evidence that a nominal parameter beyond its tolerance must bring to be named [nats].
@@ -83,7 +83,7 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
     best_of_each(&mut all);
     let excess = (search.null.square - closest.square).max(1.0);
     let left: Vec<f64> = all.iter().map(|set| set.fit.map_or(f64::NAN, |fit| search.fits[fit].cost())).collect();
-    worth_their_more(&mut all, excess, |place| left[place]);
+    worth_their_more(&mut all, excess, CLOSED * problem.whitener.count() as f64, |place| left[place]);
     against_each_other(&mut all, |effect| alone_worth(problem, search, effect, temper));
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;
@@ -125,14 +125,16 @@ pub(crate) fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&We
 }
 
 /// What a set has more than a smaller one must be worth it: one that takes less of what a gap has beyond the noise than the
-/// other's formulation may leave is less than that one is. `left` is what each of the sets leaves, by its place.
-pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, left: impl Fn(usize) -> f64) {
+/// other's formulation may leave is less than that one is; and by odds too, where it leaves more than `noise` itself. `left`
+/// is what each of the sets leaves, by its place.
+pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, noise: f64, left: impl Fn(usize) -> f64) {
     for index in 0..sets.len() {
         for other in 0..sets.len() {
             let exact = sets[other].effects.iter().all(|effect| EXACT.contains(effect));
             let least = if exact { 0.0 } else { LEAST_SHARE * excess };
             let worthless = is_part(&sets[other].effects, &sets[index].effects) && left(other) - left(index) < least;
-            let most = sets[other].nats - sets[other].rare + sets[index].rare - 1.0;
+            let needs = |set: &Weighed| if left(index) > noise { set.rare } else { set.cost };
+            let most = sets[other].nats - needs(&sets[other]) + needs(&sets[index]) - 1.0;
             if worthless && sets[index].nats > most {
                 sets[index].nats = most;
             }
@@ -223,11 +225,15 @@ mod tests {
     fn closed_form_what_a_formulation_may_leave_is_no_effect_but_an_exact_effect_leaves_nothing() {
         // 400 of a gap of a million
         let left = [600.0, 200.0];
-        for (first, stays) in [("cable_hysteresis", false), ("constant_torque", true)] {
+        for (first, noise, stays, likelier) in [
+            ("cable_hysteresis", 100.0, false, false),
+            ("cable_hysteresis", 200.0, false, true),
+            ("constant_torque", 100.0, true, true),
+        ] {
             let mut sets = [set(&[first], 1e5), set(&[first, "viscous_friction"], 1e5 + 180.0)];
-            worth_their_more(&mut sets, 1e6, |index| left[index]);
+            worth_their_more(&mut sets, 1e6, noise, |index| left[index]);
             assert_eq!(sets[1].nats - sets[1].cost > sets[0].nats - sets[0].cost, stays, "beside {first}");
-            assert_eq!(sets[1].nats - sets[1].rare > sets[0].nats - sets[0].rare, stays, "beside {first}, by odds");
+            assert_eq!(sets[1].nats - sets[1].rare > sets[0].nats - sets[0].rare, likelier, "beside {first}, by odds");
         }
     }
 
