@@ -10,6 +10,10 @@ use crate::axis::search::Candidate;
 
 /// A nominal parameter is an effect from this many tolerances on.
 pub(in crate::axis) const BEYOND: f64 = 1.15;
+/// Beside effects that take most of what is named it is none up to so many tolerances, with less than this share of their
+/// power: what their formulation leaves shifts parameters.
+const BESIDE: f64 = 3.0;
+const CRUMB: f64 = 0.06;
 
 /// Nominal parameters beyond what is known of them, by their places.
 pub(super) fn beyond(
@@ -22,12 +26,27 @@ pub(super) fn beyond(
     // and worth the price of an effect
     let grams = &balance.problem.grams;
     let worth = |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
-    let more = of_the_motor(balance, members);
-    let outside = |index: usize, shift: f64| {
+    let (columns, amplitudes) = balance.fit(members);
+    let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
+    let more = of_the_motor(balance, members, &of);
+    let named = named_power(balance, members, &of);
+    let outside = |index: usize| {
         let unsure = errors[index] + more * nominal(model)[index];
-        !within(model, index, shift, unsure)
+        let crumb = shifts[index].powi(2) * grams.power(index) < CRUMB * named;
+        shifts[index].abs() - unsure > if crumb { BESIDE } else { BEYOND } * tolerated_shift(model, index)
     };
-    (0..3).filter(|&index| worth(index) && outside(index, shifts[index])).collect()
+    (0..3).filter(|&index| worth(index) && outside(index)).collect()
+}
+
+/// What the effects of a set that are no parameters put into the balance, each by itself, squared and summed; `of` is the
+/// amplitude of a column.
+fn named_power(balance: &Balance, members: &[usize], of: &impl Fn(&usize) -> f64) -> f64 {
+    let candidates = members.iter().map(|&member| &balance.problem.candidates[member]);
+    let power = |candidate: &Candidate| {
+        let sizes: Vec<f64> = candidate.columns.iter().map(of).collect();
+        balance.problem.grams.powers(&candidate.columns, &sizes)[1]
+    };
+    candidates.filter(|candidate| !NOMINAL.contains(&candidate.shape)).map(power).sum()
 }
 
 /// By how much a motor whose constant goes up and down needs more, whatever for:
@@ -35,16 +54,10 @@ pub(super) fn beyond(
 /// ```text
 /// mean of 1 / (1 + r cos x) = 1 + r^2 / 2 + ...
 /// ```
-fn of_the_motor(balance: &Balance, members: &[usize]) -> f64 {
+fn of_the_motor(balance: &Balance, members: &[usize], of: &impl Fn(&usize) -> f64) -> f64 {
     let candidates = members.iter().map(|&member| &balance.problem.candidates[member]);
-    let ripples: Vec<&Candidate> =
-        candidates.filter(|candidate| matches!(candidate.shape, Shape::MotorRipple { .. })).collect();
-    if ripples.is_empty() {
-        return 0.0;
-    }
-    let (columns, amplitudes) = balance.fit(members);
-    let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
-    ripples.iter().flat_map(|candidate| &candidate.columns).map(|column| 0.5 * of(column).powi(2)).sum()
+    let ripples = candidates.filter(|candidate| matches!(candidate.shape, Shape::MotorRipple { .. }));
+    ripples.flat_map(|candidate| &candidate.columns).map(|column| 0.5 * of(column).powi(2)).sum()
 }
 
 /// Names of a set's effects, each once.
@@ -83,14 +96,13 @@ pub(in crate::axis) fn label(shape: &Shape, motion: &Motion) -> String {
 pub(super) fn tolerated(balance: &Balance, model: &AxisModel) -> bool {
     let motion = &balance.motion;
     let sizes = [&motion.a, &motion.v, &motion.s].map(|values| rms(&motion.pick(values)));
-    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
-    let allowed: f64 = (0..3).map(|p| (tolerance[p] * nominal(model)[p] * sizes[p]).powi(2)).sum();
+    let allowed: f64 = (0..3).map(|p| (tolerated_shift(model, p) * sizes[p]).powi(2)).sum();
     let rest = rms(&balance.residual(&[]));
     rest.powi(2) < allowed.max(2.0 * motion.floor.powi(2))
 }
 
-/// Whether a shift lies within what is known of the parameter.
-fn within(model: &AxisModel, index: usize, shift: f64, error: f64) -> bool {
-    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb][index];
-    shift.abs() - error <= BEYOND * tolerance * nominal(model)[index]
+/// How far a parameter may be off [effort per unit of it].
+fn tolerated_shift(model: &AxisModel, index: usize) -> f64 {
+    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
+    tolerance[index] * nominal(model)[index]
 }
