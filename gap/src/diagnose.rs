@@ -12,6 +12,7 @@ use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
 use crate::record::{BEGINNING_S, Data, Record, faults};
 use crate::settle::{Settled, settled};
+use crate::shake::shaken;
 use crate::touch::touched;
 
 /// No fit that leaves more than this of the noise comes near a log.
@@ -112,6 +113,11 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     if let Some(hushed) = read.hushed(&whole.search.closest().prediction) {
         drop(whole);
         read = hushed;
+        whole = settled(&read, model);
+    }
+    if let Some(rate_radps) = shaken(&whole) {
+        drop(whole);
+        read.is_shaken(rate_radps);
         whole = settled(&read, model);
     }
     if let Some(touched) = touched(&whole) {

@@ -26,6 +26,7 @@ pub mod pool;
 pub mod record;
 pub mod report;
 mod settle;
+mod shake;
 pub mod simulate;
 mod touch;
 mod window;

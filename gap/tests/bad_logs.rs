@@ -142,6 +142,18 @@ fn contract_what_is_wrong_with_the_data_is_named() {
 }
 
 #[test]
+fn contract_a_rate_that_one_effect_alone_needs_may_stand_still() {
+    let mut stuck = Table::of(12.0, &[]);
+    let rate_radps = |k: usize| 0.1 * (0.01 * k.min(7000) as f64).sin();
+    let rows = stuck.column(Column::Time).len();
+    stuck.0.push((Column::CrossRate, (0..rows).map(rate_radps).collect()));
+    let diagnosis = diagnose(&stuck.log("cross_rate_stuck"), &ModelFile::default());
+    assert_eq!(diagnosis.verdict(), gimbal_gap::judge::Verdict::NoGap);
+    let notes = &diagnosis.record.notes;
+    assert!(notes.iter().any(|note| note.contains("cross_rate_radps is stuck")), "{notes:?}");
+}
+
+#[test]
 fn contract_an_effect_that_looks_like_a_wrong_sign_is_named() {
     // the unbalance on the other side along x, and some of it along y
     let own = ModelFile::default().config.unbalance;

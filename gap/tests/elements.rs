@@ -1,11 +1,12 @@
-//! Friction and a cable made of elements that yield one after the other, from a machine of this test's own.
+//! Friction and a cable made of elements that yield one after the other, and a loop that shakes itself, from a machine of
+//! this test's own.
 
 #[path = "../examples/corpus/mod.rs"]
 mod corpus;
 
 use corpus::{ACCEL_NOISE_MPS2, Excitation, PICKOFF_NOISE_RAD, RATE_NOISE_RADPS, Simulated, TORQUE_NOISE_NM};
 use corpus::{as_log, rng, rows};
-use gimbal_gap::diagnose;
+use gimbal_gap::{diagnose, judge::Verdict};
 use gimbal_model_file::ModelFile;
 use gimbal_plant::Row;
 use gimbal_servo::Config;
@@ -40,6 +41,11 @@ struct Elements {
 }
 
 impl Elements {
+    /// Nothing beside the nominal friction.
+    fn none() -> Self {
+        Self { yields_rad: Vec::new(), cable_nm: Some(Vec::new()) }
+    }
+
     /// Before the friction, alike in their shares of it.
     fn before_friction(yields_rad: &[f64]) -> Self {
         Self { yields_rad: yields_rad.to_vec(), cable_nm: None }
@@ -83,7 +89,9 @@ impl Elements {
 /// friction   d_i m_i' = w - w_s m_i, |m_i| <= 1      T_f = level mean(m_i)
 /// cable      d_i m_i' = w, |m_i| <= 1                T_f = level clamp(w / w_s)             T_c = sum(t_i m_i)
 /// ```
-fn slopes(x: &States, row: &Row, config: &Config, elements: &Elements) -> States {
+///
+/// `noise_rad` is what the loop sees of its pick-off's noise.
+fn slopes(x: &States, row: &Row, noise_rad: f64, config: &Config, elements: &Elements) -> States {
     let (servo, gyro, bearing) = (&config.servo, &config.gyro, &config.bearing);
     let mut slopes = [0.0; ELEMENTS + MOST];
     let w = row.vehicle_rate_radps - x[PHI_RATE];
@@ -99,9 +107,10 @@ fn slopes(x: &States, row: &Row, config: &Config, elements: &Elements) -> States
     slopes[PHI_RATE] = net_nm / servo.gimbal_inertia_kg_m2;
     slopes[THETA] = x[THETA_RATE];
     slopes[THETA_RATE] = float_nm / gyro.float_inertia_kg_m2;
-    slopes[INTEGRAL] = x[THETA];
+    let seen_rad = x[THETA] + noise_rad;
+    slopes[INTEGRAL] = seen_rad;
     let [first, leads @ ..] = servo.lead_time_constants_s;
-    let mut signal = servo.gain_nm_per_rad_s * (x[INTEGRAL] + first * x[THETA]);
+    let mut signal = servo.gain_nm_per_rad_s * (x[INTEGRAL] + first * seen_rad);
     for (place, (lead, lag)) in leads.iter().zip(servo.lag_time_constants_s).enumerate() {
         let state = x[SECTIONS + place];
         slopes[SECTIONS + place] = (signal - state) / lag;
@@ -122,17 +131,22 @@ fn between(a: &Row, b: &Row, share: f64) -> Row {
     }
 }
 
-/// From one row to the next.
-fn advance(x: &mut States, from: &Row, to: &Row, config: &Config, elements: &Elements) {
+/// From one row to the next, the pick-off's noise along a line.
+fn advance(x: &mut States, [from, to]: [&Row; 2], noise_rad: [f64; 2], config: &Config, elements: &Elements) {
     let step_s = ROW_S / f64::from(STEPS);
     for step in 0..STEPS {
-        let row = |part: f64| between(from, to, (f64::from(step) + part) / f64::from(STEPS));
-        let [begin, middle, end] = [0.0, 0.5, 1.0].map(row);
+        let share = |part: f64| (f64::from(step) + part) / f64::from(STEPS);
+        let at = |part: f64| {
+            let share = share(part);
+            (between(from, to, share), noise_rad[0] + share * (noise_rad[1] - noise_rad[0]))
+        };
+        let [begin, middle, end] = [0.0, 0.5, 1.0].map(at);
         let along = |slope: &States, time_s: f64| -> States { std::array::from_fn(|k| x[k] + time_s * slope[k]) };
-        let a = slopes(x, &begin, config, elements);
-        let b = slopes(&along(&a, 0.5 * step_s), &middle, config, elements);
-        let c = slopes(&along(&b, 0.5 * step_s), &middle, config, elements);
-        let d = slopes(&along(&c, step_s), &end, config, elements);
+        let slopes = |x: &States, (row, noise_rad): &(Row, f64)| slopes(x, row, *noise_rad, config, elements);
+        let a = slopes(x, &begin);
+        let b = slopes(&along(&a, 0.5 * step_s), &middle);
+        let c = slopes(&along(&b, 0.5 * step_s), &middle);
+        let d = slopes(&along(&c, step_s), &end);
         for k in 0..x.len() {
             x[k] += step_s / 6.0 * (a[k] + 2.0 * (b[k] + c[k]) + d[k]);
         }
@@ -140,16 +154,17 @@ fn advance(x: &mut States, from: &Row, to: &Row, config: &Config, elements: &Ele
     }
 }
 
-fn simulated(elements: &Elements) -> Simulated {
+/// A run, the loop's own noise of so much at each row.
+fn simulated(elements: &Elements, rows: &[Row], loop_rad: f64) -> Simulated {
     let config = Config::consistent();
-    let rows = rows(Excitation::Manoeuvre, SECONDS, SEED);
     let mut rng = rng(SEED, 3);
     let mut noise = |sigma: f64| -> f64 { sigma * rng.sample::<f64, _>(StandardNormal) };
     let mut x = [0.0; ELEMENTS + MOST];
     for _ in 0..3000 {
-        advance(&mut x, &rows[0], &rows[0], &config, elements);
+        advance(&mut x, [&rows[0], &rows[0]], [0.0, 0.0], &config, elements);
     }
     let mut columns: [Vec<f64>; 9] = Default::default();
+    let in_loop: Vec<f64> = rows.iter().map(|_| noise(loop_rad)).collect();
     for (k, pair) in rows.windows(2).enumerate() {
         let row = &pair[0];
         let values = [
@@ -159,20 +174,24 @@ fn simulated(elements: &Elements) -> Simulated {
             row.accel_z_mps2 + noise(ACCEL_NOISE_MPS2),
             row.vehicle_rate_radps + noise(0.1 * RATE_NOISE_RADPS),
             row.cross_rate_radps + noise(RATE_NOISE_RADPS),
-            x[THETA] + noise(0.1 * PICKOFF_NOISE_RAD),
+            x[THETA] + in_loop[k] + noise(0.1 * PICKOFF_NOISE_RAD),
             x[MOTOR] + noise(TORQUE_NOISE_NM),
             x[PHI],
         ];
         columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
-        advance(&mut x, row, &pair[1], &config, elements);
+        advance(&mut x, [row, &pair[1]], [in_loop[k], in_loop[k + 1]], &config, elements);
     }
     Simulated { columns }
+}
+
+fn manoeuvre() -> Vec<Row> {
+    rows(Excitation::Manoeuvre, SECONDS, SEED)
 }
 
 #[test]
 fn springs_that_yield_one_after_the_other_are_presliding() {
     let elements = Elements::before_friction(&YIELDS_RAD);
-    let diagnosis = diagnose(&as_log(&simulated(&elements)), &ModelFile::default());
+    let diagnosis = diagnose(&as_log(&simulated(&elements, &manoeuvre(), 0.0)), &ModelFile::default());
     let decision = diagnosis.decision.expect("a decision");
     let names: Vec<&str> = decision.found.iter().map(|found| found.effect).collect();
     assert_eq!(names, ["presliding"], "{:?}: {:?}", decision.verdict, decision.left_over);
@@ -187,7 +206,7 @@ fn springs_that_yield_one_after_the_other_are_presliding() {
 fn stops_that_yield_one_after_the_other_are_a_cable() {
     let (torque_nm, displacement_rad) = (6e-5, 0.03);
     let elements = Elements::of_cable(torque_nm, displacement_rad);
-    let diagnosis = diagnose(&as_log(&simulated(&elements)), &ModelFile::default());
+    let diagnosis = diagnose(&as_log(&simulated(&elements, &manoeuvre(), 0.0)), &ModelFile::default());
     let decision = diagnosis.decision.expect("a decision");
     let names: Vec<&str> = decision.found.iter().map(|found| found.effect).collect();
     assert_eq!(names, ["cable_hysteresis"], "{:?}: {:?}", decision.verdict, decision.left_over);
@@ -196,4 +215,22 @@ fn stops_that_yield_one_after_the_other_are_a_cable() {
     for ((value, error), truth) in found.values.iter().zip(&found.errors).zip([torque_nm, displacement_rad]) {
         assert!((value - truth).abs() < 2.0 * error, "{value:e} +- {error:e} of {truth:e}");
     }
+}
+
+#[test]
+fn a_loop_that_shakes_itself_is_no_effect() {
+    // the bearing turns around often, each time with the rate that the loop's noise makes
+    let swings = |k: u32| Row {
+        accel_x_mps2: 3.0,
+        accel_y_mps2: 9.0,
+        accel_z_mps2: 1.0,
+        vehicle_rate_radps: 0.25 * (7.1e-3 * f64::from(k)).sin() + 0.06 * (3.1e-3 * f64::from(k)).cos(),
+        ..Row::default()
+    };
+    let rows: Vec<Row> = (0..40_000).map(swings).collect();
+    let simulated = simulated(&Elements::none(), &rows, 4e-7);
+    let diagnosis = diagnose(&as_log(&simulated), &ModelFile::default());
+    let notes = diagnosis.decision.as_ref().map(|decision| &decision.notes);
+    assert_eq!(diagnosis.verdict(), Verdict::NoGap, "{notes:?}");
+    assert!(diagnosis.record.notes.iter().any(|note| note.contains("shakes")), "{:?}", diagnosis.record.notes);
 }

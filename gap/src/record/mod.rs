@@ -97,6 +97,11 @@ impl Record {
         let mut driven = |column: Column| -> Vec<f64> {
             let Some(values) = log.column(column) else { return Vec::new() };
             if let Some(stuck) = stuck::told(column.name(), values, period_s) {
+                // nothing but one effect hangs on it; a table that turns at one rate is read at one value
+                if column == Column::CrossRate && !config.gyro.cross_coupling {
+                    notes.push(format!("{stuck}: it is not used"));
+                    return Vec::new();
+                }
                 faults.push(stuck);
             }
             filled(&grid.place(values))
@@ -219,6 +224,12 @@ impl Record {
             "the float touched a stop at {level_rad:.3e} rad: the loop's answer tells it, no plateau does"
         ));
         self.leave_out(on_stop);
+    }
+
+    /// Takes the gimbal to be shaken by so much beside what the logged rate has of noise [rad/s].
+    pub(crate) fn is_shaken(&mut self, rate_radps: f64) {
+        self.rate_noise.rms_radps = self.rate_noise.rms_radps.hypot(rate_radps);
+        self.notes.push(format!("the loop shakes the gimbal with its own noise, by {rate_radps:.1e} rad/s"));
     }
 
     /// Masks the time on a stop and what follows it for a while.
