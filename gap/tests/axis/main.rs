@@ -8,6 +8,7 @@
 )]
 
 mod arm;
+mod columns;
 mod play;
 mod real;
 mod simulated;
