@@ -7,7 +7,8 @@
 //! y: the logged channels of the record without its first second. W: one over the amplitude spectrum of the noise
 //! floor, which is the instruments' noise plus the noise of the logged inputs carried through the plant. S: finite
 //! differences of y by the nominal parameters; a parameter may move from where it truly is to either end of its
-//! tolerance. Where a difference is large, y(without) is taken anew there, as y is no line in its parameters. The smallest detectable size is the one with d = 5.
+//! tolerance. Where a difference is large, y(without) is taken anew where they have moved to, as y is no line in them. The
+//! smallest detectable size is the one with d = 5.
 
 use std::rc::Rc;
 
