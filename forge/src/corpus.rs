@@ -1,5 +1,6 @@
 //! A corpus of logs: which kinds in which shares, and one log after the other from a seed.
 
+mod bench;
 mod case;
 mod chosen;
 mod drift;

@@ -1,10 +1,10 @@
 //! The effects of a log, drawn and sized, and what its answer says of them.
 
+use super::bench::Bench;
 use super::drift::Drift;
 use super::setting::{Columns, Setting};
-use super::sizing::Bench;
 use super::{AnswerEffect, Kind};
-use crate::detect::DETECTABLE;
+use crate::detect::{DETECTABLE, Projection};
 use crate::draw::Draw;
 use crate::effects::{BEYOND, Effect, World, library_names};
 
@@ -86,18 +86,34 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
         return Vec::new();
     }
     let projection = bench.projection();
-    let alone: Vec<Vec<f64>> = effects.iter().map(|(effect, size, _)| bench.change(effect, *size)).collect();
-    let d_alone: Vec<f64> = effects.iter().map(|(effect, size, _)| bench.d_of(effect, *size, &projection)).collect();
+    let by_itself: Vec<(Vec<f64>, Projection)> = effects
+        .iter()
+        .map(|(effect, size, _)| {
+            let (with, without) = bench.beyond(effect, *size);
+            bench.left_by_moving(&with, &without, &projection, &[])
+        })
+        .collect();
+    let by_power: Vec<Option<f64>> = effects.iter().map(|(effect, size, _)| bench.by_power(effect, *size)).collect();
+    let d_by_itself = |place: usize| {
+        let (difference, projection) = &by_itself[place];
+        by_power[place].unwrap_or_else(|| projection.left_of(difference))
+    };
     // what cannot be seen has no need of what it could be taken for
-    let faint = effects.len() == 1 && d_alone[0] < DETECTABLE;
+    let faint = effects.len() == 1 && d_by_itself(0) < DETECTABLE;
     let tangents = if faint { Vec::new() } else { bench.tangents() };
+    let changes: Vec<Vec<f64>> = if effects.len() == 1 {
+        Vec::new()
+    } else {
+        effects.iter().map(|(effect, size, _)| bench.change(effect, *size)).collect()
+    };
     effects
         .iter()
         .enumerate()
         .map(|(place, (effect, size, detectable))| {
-            let others = || alone.iter().enumerate().filter(|(index, _)| *index != place);
-            let (with, without) = if effects.len() == 1 {
-                bench.beyond(effect, *size)
+            let others = || changes.iter().enumerate().filter(|(index, _)| *index != place);
+            let beside: Vec<&[f64]> = others().map(|(_, column)| &column[..]).collect();
+            let (marginal, projection) = if effects.len() == 1 {
+                by_itself[place].clone()
             } else {
                 let mut without = bench.base.clone();
                 for (index, (other, other_size, _)) in effects.iter().enumerate() {
@@ -106,10 +122,8 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                         other.apply(size, &bench.scale, &mut without);
                     }
                 }
-                (world.clone(), without)
+                bench.left_by_moving(world, &without, &projection, &beside)
             };
-            let beside: Vec<&[f64]> = others().map(|(_, column)| &column[..]).collect();
-            let (marginal, projection) = bench.left_by_moving(&with, &without, &projection, &beside);
             let among: Vec<&(&str, Vec<f64>)> = tangents.iter().filter(|(name, _)| *name != effect.name).collect();
             // below the detectable size nothing can be told from anything
             let seen = projection.left_with(&marginal, &beside) >= DETECTABLE;
@@ -127,8 +141,7 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                 .collect();
             let mut all: Vec<&[f64]> = among.iter().map(|(_, column)| &column[..]).collect();
             all.extend(&beside);
-            let by_power = bench.by_power(effect, *size);
-            let of = |d: f64| by_power.unwrap_or(d);
+            let of = |d: f64| by_power[place].unwrap_or(d);
             AnswerEffect {
                 name: effect.name.to_owned(),
                 block: crate::effects::block_of(effect.name).to_owned(),
@@ -136,7 +149,7 @@ fn answers(bench: &Bench<'_>, effects: &[(Effect, f64, f64)], world: &World) -> 
                 size: *size,
                 detectable_size: *detectable,
                 multiple: size / detectable,
-                d: d_alone[place],
+                d: d_by_itself(place),
                 d_beside_others: of(projection.left_with(&marginal, &beside)),
                 d_beyond_library: of(projection.left_with(&marginal, &all)),
                 equivalents,

@@ -1,9 +1,9 @@
 //! What is written down of a run: channels with their noise and least counts, columns, and the gaps that they show.
 
 use super::SignalGap;
+use super::bench::STEPS;
 use super::drift::Drift;
 use super::setting::Setting;
-use super::sizing::STEPS;
 use super::text::Column;
 use crate::detect::UNSCORED_S;
 use crate::draw::Draw;

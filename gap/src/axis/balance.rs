@@ -6,7 +6,7 @@ use super::floor::floor_left;
 use super::judge::BEYOND;
 use super::library::{NOMINAL, Shape, rms};
 use super::motion::Motion;
-use super::plain::{Needs, columns as columns_of, nominal, nominally, rounded};
+use super::plain::{Needs, columns as columns_of, nominal, nominally, rounded, tolerated_shifts};
 use super::play::plays;
 use super::regress::Grams;
 use super::resonance::modes;
@@ -192,7 +192,7 @@ impl Balance {
             least_share: LEAST_SHARE,
             nominal: Some(parameters),
             slip,
-            within: within(model, parameters),
+            within: within(model),
         };
         Self { motion, target, effort, needs, columns, base, problem, hidden, dead_zone_is_friction }
     }
@@ -306,9 +306,8 @@ fn noise_of(shape: &Shape, motion: &Motion, model: &AxisModel) -> f64 {
 }
 
 /// Shifts of the nominal parameters that are none.
-fn within(model: &AxisModel, parameters: [f64; 3]) -> Vec<f64> {
-    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
-    tolerance.iter().zip(parameters).map(|(tolerance, parameter)| BEYOND * tolerance * parameter).collect()
+fn within(model: &AxisModel) -> Vec<f64> {
+    tolerated_shifts(model).map(|shift| BEYOND * shift).to_vec()
 }
 
 /// Rows over which a residual is correlated.
@@ -331,10 +330,9 @@ fn apart_s(motion: &Motion) -> f64 {
 /// Priors of what stands in every balance: tolerances of the nominal parameters, and moments of reading apart, against the
 /// noise as correlated as it is.
 fn set_priors(grams: &mut Grams, model: &AxisModel, base: &[Shape], rest: f64, motion: &Motion, lag: usize) {
-    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
     let variance = rest.max(motion.floor).powi(2) * (1 + 2 * lag) as f64;
-    let parameters = tolerance.iter().zip(nominal(model)).map(|(tolerance, parameter)| tolerance * parameter);
-    for (place, deviation) in parameters.chain([apart_s(motion)]).enumerate().take(base.len()) {
+    for (place, deviation) in tolerated_shifts(model).into_iter().chain([apart_s(motion)]).enumerate().take(base.len())
+    {
         let known = 1e9 * grams.power(place).max(1e-300);
         grams.precision[place] = if deviation > 0.0 { (variance / (deviation * deviation)).min(known) } else { known };
     }

@@ -14,6 +14,7 @@ mod follows;
 mod judge;
 mod law;
 mod library;
+mod looked;
 mod memory;
 mod motion;
 mod noise;

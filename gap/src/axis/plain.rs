@@ -19,6 +19,17 @@ pub(super) fn nominal(model: &AxisModel) -> [f64; 3] {
     [model.inertia, model.viscous, model.coulomb]
 }
 
+/// How well they are known, relative.
+pub(super) fn tolerances(model: &AxisModel) -> [f64; 3] {
+    [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb]
+}
+
+/// How far each may be off.
+pub(super) fn tolerated_shifts(model: &AxisModel) -> [f64; 3] {
+    let (parameters, tolerances) = (nominal(model), tolerances(model));
+    std::array::from_fn(|place| tolerances[place] * parameters[place])
+}
+
 /// What a motion needs of effort: the nominal parameters and a constant; where something else acts on the axis, gravity for
 /// one, all that was found.
 #[derive(Debug, Clone)]

@@ -45,7 +45,7 @@ impl Search {
 const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
 /// What a fit that closes the gap leaves of the noise.
-pub(crate) const CLOSED: f64 = 1.02;
+const CLOSED: f64 = 1.02;
 /// What a fit takes away from where on the sensitivities without its effects mislead beside it.
 const FAR: f64 = 2e3;
 /// How often it is taken further at most, and what of its square it leaves as long as it gets there.
@@ -152,9 +152,13 @@ pub(crate) fn ended(problem: &mut Problem, mut fit: Fit) -> Fit {
     fit
 }
 
-/// Whether a fit leaves hardly more than the noise.
+/// Square up to which a fit leaves hardly more than the noise.
+pub(crate) fn closed_at(problem: &Problem) -> f64 {
+    CLOSED * problem.whitener.count() as f64
+}
+
 fn is_closed(problem: &Problem, fit: &Fit) -> bool {
-    fit.square <= CLOSED * problem.whitener.count() as f64
+    fit.square <= closed_at(problem)
 }
 
 fn closest<'a>(null: &'a Fit, fits: &'a [Fit]) -> &'a Fit {

@@ -5,7 +5,7 @@ use gimbal_model_file::Tolerance;
 use super::against::against;
 use super::set::is_part;
 use super::stretch::carried_alone;
-use crate::fit::{CLOSED, Fit, Glimpse, Problem, Search, first_of_each, glimpses_beside};
+use crate::fit::{Fit, Glimpse, Problem, Search, closed_at, first_of_each, glimpses_beside};
 use crate::library::{NAMED, releases};
 
 /// Evidence that a nominal parameter beyond its tolerance must bring to be named [nats].
@@ -83,7 +83,7 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
     best_of_each(&mut all);
     let excess = (search.null.square - closest.square).max(1.0);
     let left: Vec<f64> = all.iter().map(|set| set.fit.map_or(f64::NAN, |fit| search.fits[fit].cost())).collect();
-    worth_their_more(&mut all, excess, CLOSED * problem.whitener.count() as f64, |place| left[place]);
+    worth_their_more(&mut all, excess, closed_at(problem), |place| left[place]);
     against_each_other(&mut all, |effect| alone_worth(problem, search, effect, temper));
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;

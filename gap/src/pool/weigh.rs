@@ -6,7 +6,7 @@ use super::climb::Fitted;
 use super::extend::Promise;
 use super::material::Material;
 use super::parameters::Unit;
-use crate::fit::{CLOSED, is_idle};
+use crate::fit::{closed_at, is_idle};
 use crate::judge::{
     HELPS, NEVER, Weighed, at_a_bound, beyond, carried_by_one_log, carried_by_one_stretch, caution, costs_of, is_part,
     worth_their_more,
@@ -35,7 +35,7 @@ pub(super) fn weigh(
     let left = |fitted: &Fitted| fitted.squares.iter().sum::<f64>() + fitted.prior;
     let closest = fits.iter().chain([null]).map(left).fold(f64::MAX, f64::min);
     let excess = (left(null) - closest).max(1.0);
-    let noise = CLOSED * materials.iter().map(|material| material.problem.whitener.count() as f64).sum::<f64>();
+    let noise = materials.iter().map(|material| closed_at(&material.problem)).sum();
     worth_their_more(&mut all, excess, noise, |index| left(&fits[index]));
     for promise in promises {
         let effects = vec![promise.candidate.effect];

@@ -6,7 +6,7 @@ use gimbal_gap::axis::{AxisLog, diagnose, text};
 use gimbal_model_file::AxisModel;
 
 use crate::simulated::{diagnosed, model, names, read, value, with_law, with_reference};
-use crate::simulator::{MODEL, Path, Truth, log};
+use crate::simulator::{MODEL, Path, Truth, log, position_alone};
 
 #[test]
 fn cross_wrong_columns_are_told_in_words_and_do_not_become_effects() {
@@ -87,11 +87,6 @@ fn cross_a_scale_of_the_effort_is_told_once() {
     let read = AxisLog::read(scaled.as_bytes(), File::new("simulated.csv"), &model).expect("reads");
     let diagnosis = diagnose(read, &model, Vec::new());
     assert_eq!(names(&diagnosis), ["torque_scale"], "{}", text(&diagnosis));
-}
-
-/// The model file without a rate.
-pub(crate) fn position_alone() -> String {
-    MODEL.replace("velocity = { name = \"v\", unit = \"m/s\" }\n", "")
 }
 
 #[test]

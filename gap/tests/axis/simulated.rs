@@ -6,8 +6,7 @@ use gimbal_gap::axis::{AxisDiagnosis, AxisLog, diagnose, json, text};
 use gimbal_gap::judge::Verdict;
 use gimbal_model_file::AxisModel;
 
-use crate::columns::position_alone;
-use crate::simulator::{MODEL, Path, Truth, log};
+use crate::simulator::{MODEL, Path, Truth, log, position_alone};
 
 pub(crate) fn model() -> AxisModel {
     AxisModel::parse(MODEL, "axis.toml").expect("reads").expect("an axis")

@@ -93,6 +93,11 @@ coulomb = 25.0\neffort_held = true\nknown_good = []\n[axis.columns]\ntime = { na
 position = { name = \"x\", unit = \"m\" }\nvelocity = { name = \"v\", unit = \"m/s\" }\neffort = { name = \"f\", unit = \"N\" }\n\
 [axis.columns.auxiliary]\ncode = { name = \"code\", unit = \"1\" }\n";
 
+/// The model file without a rate.
+pub(crate) fn position_alone() -> String {
+    MODEL.replace("velocity = { name = \"v\", unit = \"m/s\" }\n", "")
+}
+
 /// A log of the axis: t, x, v, f, code.
 pub(crate) fn log(truth: &Truth, path: Path, length_s: f64, seed: u64) -> String {
     let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -5,7 +5,7 @@ use gimbal_model_file::AxisModel;
 use crate::axis::balance::Balance;
 use crate::axis::library::{NOMINAL, Shape, rms};
 use crate::axis::motion::Motion;
-use crate::axis::plain::nominal;
+use crate::axis::plain::{nominal, tolerated_shifts};
 use crate::axis::search::Candidate;
 
 /// A nominal parameter is an effect from this many tolerances on.
@@ -30,10 +30,11 @@ pub(super) fn beyond(
     let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
     let more = of_the_motor(balance, members, &of);
     let named = named_power(balance, members, &of);
+    let tolerated = tolerated_shifts(model);
     let outside = |index: usize| {
         let unsure = errors[index] + more * nominal(model)[index];
         let crumb = shifts[index].powi(2) * grams.power(index) < CRUMB * named;
-        shifts[index].abs() - unsure > if crumb { BESIDE } else { BEYOND } * tolerated_shift(model, index)
+        shifts[index].abs() - unsure > if crumb { BESIDE } else { BEYOND } * tolerated[index]
     };
     (0..3).filter(|&index| worth(index) && outside(index)).collect()
 }
@@ -96,13 +97,7 @@ pub(in crate::axis) fn label(shape: &Shape, motion: &Motion) -> String {
 pub(super) fn tolerated(balance: &Balance, model: &AxisModel) -> bool {
     let motion = &balance.motion;
     let sizes = [&motion.a, &motion.v, &motion.s].map(|values| rms(&motion.pick(values)));
-    let allowed: f64 = (0..3).map(|p| (tolerated_shift(model, p) * sizes[p]).powi(2)).sum();
+    let allowed: f64 = tolerated_shifts(model).iter().zip(sizes).map(|(shift, size)| (shift * size).powi(2)).sum();
     let rest = rms(&balance.residual(&[]));
     rest.powi(2) < allowed.max(2.0 * motion.floor.powi(2))
-}
-
-/// How far a parameter may be off [effort per unit of it].
-fn tolerated_shift(model: &AxisModel, index: usize) -> f64 {
-    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
-    tolerance[index] * nominal(model)[index]
 }

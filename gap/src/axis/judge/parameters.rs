@@ -4,7 +4,7 @@ use gimbal_model_file::AxisModel;
 
 use crate::axis::library::{NOMINAL, Shape};
 use crate::axis::motion::Motion;
-use crate::axis::plain::nominal;
+use crate::axis::plain::{nominal, tolerances};
 
 /// A parameter of an effect.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,8 +28,8 @@ pub(in crate::axis) fn deviation(samples: &[Vec<f64>], place: usize) -> f64 {
 /// How well the model knows a factor that its parameters have in common: `1/sqrt(sum 1/tolerance^2)`, of those that are
 /// not zero.
 fn common_tolerance(model: &AxisModel) -> f64 {
-    let tolerance = [model.tolerance.inertia, model.tolerance.viscous, model.tolerance.coulomb];
-    let known = tolerance.iter().zip(nominal(model)).filter(|(_, parameter)| *parameter > 0.0);
+    let tolerances = tolerances(model);
+    let known = tolerances.iter().zip(nominal(model)).filter(|(_, parameter)| *parameter > 0.0);
     known.map(|(tolerance, _)| f64::powi(tolerance.max(1e-6), -2)).sum::<f64>().sqrt().recip()
 }
 
