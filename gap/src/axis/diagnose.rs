@@ -81,7 +81,7 @@ const ONE_SCALE: f64 = 0.02;
 /// Diagnoses a log against a model, and scores what it finds on logs that it does not fit.
 #[must_use]
 pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>) -> AxisDiagnosis {
-    let Looked { log, checked, balance, best, mut judged } = Looked::closely(log, model);
+    let Looked { log, checked, balance, best, mut judged, .. } = Looked::closely(log, model);
     let mut notes = log.notes.clone();
     let unseen: Vec<Vec<Shrunk>> = unseen
         .into_iter()

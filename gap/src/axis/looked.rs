@@ -18,6 +18,8 @@ const SCALES: [&str; 3] = ["position_scale", "velocity_scale", "time_scale"];
 
 /// A log as it is looked at in one band.
 pub(super) struct Looked {
+    /// The model as it was looked at with: columns that are taken for right among what is known good.
+    model: AxisModel,
     pub(super) log: AxisLog,
     pub(super) checked: Checked,
     pub(super) balance: Balance,
@@ -26,52 +28,57 @@ pub(super) struct Looked {
 }
 
 impl Looked {
-    fn new(log: AxisLog, model: &AxisModel) -> Self {
-        let (log, checked, motion) = ready(log, model);
-        let (balance, best) = Balance::searched(motion, model);
-        let judged = judge(&balance, &best, model);
-        Self { log, checked, balance, best, judged }
+    fn new(log: AxisLog, model: AxisModel) -> Self {
+        let (log, checked, motion) = ready(log, &model);
+        let (balance, best) = Balance::searched(motion, &model);
+        let judged = judge(&balance, &best, &model);
+        Self { model, log, checked, balance, best, judged }
+    }
+
+    /// In the widest band that its noise allows, or closer.
+    pub(super) fn closely(log: AxisLog, model: &AxisModel) -> Self {
+        let (wide, instead) = Self::whichever_scale(&log, model);
+        let mut closest = wide.narrowed(&log).unwrap_or(wide);
+        closest.checked.words.extend(instead);
+        closest
     }
 
     /// Which column's scale is wrong, the nominal parameters tell as they are; where effects stand beside them, it may be
-    /// another one that explains the log with fewer.
-    fn whichever_scale(log: &AxisLog, model: &AxisModel) -> Self {
-        let first = Self::new(log.clone(), model);
+    /// another one that explains the log with fewer. And what is told of it then.
+    fn whichever_scale(log: &AxisLog, model: &AxisModel) -> (Self, Option<String>) {
+        let first = Self::new(log.clone(), model.clone());
         let of_scale = |fault: &&ColumnFault| SCALES.contains(&fault.effect);
         let told = first.checked.faults.iter().find(of_scale).map(|fault| fault.effect);
-        let Some(told) = told.filter(|_| first.effects() > 0) else { return first };
+        let Some(told) = told.filter(|_| first.effects() > 0) else { return (first, None) };
         let others = SCALES.into_iter().filter(|scale| *scale != told && !model.trusts(scale));
-        let mut best = first;
+        let mut best = (first, None);
         for scale in others {
             let known_good = SCALES.iter().filter(|other| **other != scale).map(|other| (*other).to_owned());
             let known_good = model.known_good.iter().cloned().chain(known_good).collect();
-            let other = Self::new(log.clone(), &AxisModel { known_good, ..model.clone() });
-            if other.judged.verdict != Verdict::Unexplained && other.effects() < best.effects() {
-                best = other;
-                best.checked.words.push(format!("with `{scale}` in the place of `{told}` it takes fewer effects"));
+            let other = Self::new(log.clone(), AxisModel { known_good, ..model.clone() });
+            if other.judged.verdict != Verdict::Unexplained && other.effects() < best.0.effects() {
+                best = (other, Some(format!("with `{scale}` in the place of `{told}` it takes fewer effects")));
             }
         }
         best
     }
 
+    /// In a narrower band, where effects explain it there, no more of them, that noise hides in this one.
+    fn narrowed(&self, log: &AxisLog) -> Option<Self> {
+        let hidden = &self.balance.hidden;
+        if self.model.band_hz.is_some() || self.judged.verdict == Verdict::NoGap || hidden.is_empty() {
+            return None;
+        }
+        let most = if self.judged.verdict == Verdict::Unexplained { usize::MAX } else { self.judged.found.len() };
+        let bands_hz = std::iter::successors(Some(NARROWER * self.balance.motion.band_hz), |hz| Some(NARROWER * hz));
+        let narrow = |band_hz| Self::new(log.clone(), AxisModel { band_hz: Some(band_hz), ..self.model.clone() });
+        let better = |narrow: &Self| narrow.judged.found.len() <= most && narrow.explains_by(hidden);
+        bands_hz.take(NARROWINGS).map(narrow).find(better)
+    }
+
     /// Effects of its balance, parameters beyond their tolerance among them.
     fn effects(&self) -> usize {
         self.balance.problem.effects(&self.best.members)
-    }
-
-    /// In the widest band that its noise allows; in a narrower one where effects explain it, no more of them, that noise hides
-    /// in the wide one.
-    pub(super) fn closely(log: AxisLog, model: &AxisModel) -> Self {
-        let wide = Self::whichever_scale(&log, model);
-        let hidden = &wide.balance.hidden;
-        if model.band_hz.is_some() || wide.judged.verdict == Verdict::NoGap || hidden.is_empty() {
-            return wide;
-        }
-        let most = if wide.judged.verdict == Verdict::Unexplained { usize::MAX } else { wide.judged.found.len() };
-        let bands_hz = std::iter::successors(Some(NARROWER * wide.balance.motion.band_hz), |hz| Some(NARROWER * hz));
-        let narrow = |band_hz| Self::new(log.clone(), &AxisModel { band_hz: Some(band_hz), ..model.clone() });
-        let better = |narrow: &Self| narrow.judged.found.len() <= most && narrow.explains_by(hidden);
-        bands_hz.take(NARROWINGS).map(narrow).find(better).unwrap_or(wide)
     }
 
     /// Whether it is explained, and by one of these effects.
