@@ -74,6 +74,7 @@ pub struct Sample {
 struct Stage {
     row: Row,
     load_nm: f64,
+    pickoff_noise_rad: f64,
     time_s: f64,
     since_commit_s: f64,
 }
@@ -177,22 +178,28 @@ impl<'a> Machine<'a> {
     #[must_use]
     pub fn sample(&self) -> Sample {
         let row = self.track.rows[self.row.min(self.track.rows.len() - 1)];
+        let pickoff_noise_rad = self.pickoff_noise_rad(self.row);
         let stage = Stage {
             row,
             load_nm: self.palmgren.load_nm(row.accel_mps2),
+            pickoff_noise_rad,
             time_s: self.start_s + self.row as f64 * self.track.period_s,
             since_commit_s: 0.0,
         };
         let torques = self.torques(&self.states, &stage, self.states[RELATIVE]);
         Sample {
             gimbal_angle_rad: self.states[PHI],
-            gyro_angle_rad: self.seen(self.states[THETA]),
+            gyro_angle_rad: self.seen(self.states[THETA] + pickoff_noise_rad),
             motor_torque_nm: torques.motor,
             relative_angle_rad: self.states[RELATIVE],
             friction_nm: torques.friction,
             velocity_error_mps: [self.states[VELOCITY], self.states[VELOCITY + 1]],
             on_stop: self.stop != Stop::Free,
         }
+    }
+
+    fn pickoff_noise_rad(&self, row: usize) -> f64 {
+        self.truth.drive.noise_rad.get(row).copied().unwrap_or(0.0)
     }
 
     fn seen(&self, angle_rad: f64) -> f64 {

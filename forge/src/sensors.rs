@@ -86,6 +86,9 @@ pub struct Noise {
     pub coloured: f64,
     /// Corner of the coloured noise [Hz].
     pub corner_hz: f64,
+    /// Whether the servo takes the pick-off's noise for motion, and shakes the gimbal with it.
+    #[serde(default)]
+    pub in_loop: bool,
 }
 
 /// Least counts [rad, N m, m/s2, rad/s]: pick-off, torque, accelerometer, rate sensor, all angles.
@@ -105,6 +108,7 @@ impl Noise {
             rate_radps: around(2e-5),
             coloured: if draw.chance(0.5) { draw.uniform(0.2, 1.0) } else { 0.0 },
             corner_hz: draw.log_uniform(0.5, 20.0),
+            in_loop: draw.chance(0.25),
         }
     }
 
@@ -124,6 +128,14 @@ impl Noise {
             })
             .collect();
         Track { period_s: track.period_s, rows }
+    }
+
+    /// Noise of the pick-off: what the servo sees of it, one value a row of the track, and what is logged beside that, one a
+    /// row of the record.
+    #[must_use]
+    pub fn on_pickoff(&self, rows: usize, before: usize, period_s: f64, draw: &mut Draw) -> (Vec<f64>, Vec<f64>) {
+        let mut noise = self.series(self.gyro_angle_rad, rows + before, period_s, draw);
+        if self.in_loop { (noise, vec![0.0; rows]) } else { (Vec::new(), noise.split_off(before)) }
     }
 
     /// White and coloured noise of standard deviation `white`, one value a row.

@@ -106,6 +106,8 @@ pub struct Drive {
     pub dead_zone_nm: f64,
     /// Step of the pick-off [rad].
     pub step_rad: Option<f64>,
+    /// Noise of the pick-off that the servo takes for motion, one value a row of the track [rad].
+    pub noise_rad: Vec<f64>,
     /// Relative loss of torque at full heat, torque of full heat [N m], time constant [s].
     pub heating: Option<[f64; 3]>,
     /// Torque over its own size.

@@ -9,7 +9,7 @@ use gimbal_forge::effects::{Effect, World};
 use gimbal_forge::excitation::Excitation;
 use gimbal_forge::scene::{Outputs, Scene};
 use gimbal_forge::sensors::Sensors;
-use gimbal_forge::{Draw, Sample, Truth};
+use gimbal_forge::{Draw, Row, Sample, Track, Truth};
 use gimbal_servo::Config;
 
 /// Steps a row of the logs that are handed out.
@@ -48,6 +48,27 @@ fn closed_form_the_nominal_platform_converges_below_the_noise() {
         println!("{}: d = {d:.3} in 60 s", excitation.name());
         assert!(d < 5.0, "{}: {d}", excitation.name());
     }
+}
+
+#[test]
+fn closed_form_the_servo_takes_noise_of_the_pickoff_for_motion() {
+    let mut truth = Truth::new(&Config::consistent());
+    // what never changes is driven to zero: float and gimbal stand where the pick-off is off the other way
+    let (rows, off_rad) = (6000, 1e-5);
+    truth.drive.noise_rad = vec![off_rad; rows];
+    let still = Scene { track: Track { period_s: 1e-3, rows: vec![Row::default(); rows] }, before: 0 };
+    let last = *still.run(&truth, &still.track, HANDED_OUT).last().expect("rows");
+    let gyro = truth.config.gyro;
+    let stands_rad = -off_rad * gyro.damping_nm_s_per_rad / gyro.angular_momentum_nm_s;
+    assert!((last.gimbal_angle_rad / stands_rad - 1.0).abs() < 1e-3, "{} {stands_rad}", last.gimbal_angle_rad);
+    assert!(last.gyro_angle_rad.abs() < 1e-3 * off_rad, "{}", last.gyro_angle_rad);
+    // and the steps are fine enough for what it does from row to row
+    let scene = scene(Excitation::Manoeuvre, 20_000);
+    let mut draw = Draw::new(&Draw::seed_of(12), 0);
+    truth.drive.noise_rad = (0..20_000).map(|_| 6e-7 * draw.normal()).collect();
+    let d = d(&scene, &truth) * 3.0_f64.sqrt();
+    println!("noise in the loop: d = {d:.3} in 60 s");
+    assert!(d < 5.0, "{d}");
 }
 
 #[test]

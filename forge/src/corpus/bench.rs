@@ -78,10 +78,14 @@ impl<'a> Bench<'a> {
         let loads = Loads::new(&base.truth.config.bearing, &scene.track, steps);
         let samples = scene.run_with(&base.truth, &scene.track, steps, Some(&loads));
         let outputs = Scene::outputs(base, &samples);
-        let carried = Scene::outputs(base, &run(base, &noise.on_inputs(&scene.track, draw)));
         let (rows, period_s) = (scene.rows(), scene.track.period_s);
-        let measured: Outputs = [noise.gyro_angle_rad, noise.motor_torque_nm, noise.gimbal_angle_rad]
-            .map(|white| noise.series(white, rows, period_s, draw));
+        let (seen, beside) = noise.on_pickoff(rows, scene.before, period_s, draw);
+        let mut shaken = base.clone();
+        shaken.truth.drive.noise_rad = seen;
+        let carried = Scene::outputs(base, &run(&shaken, &noise.on_inputs(&scene.track, draw)));
+        let [torque, gimbal] =
+            [noise.motor_torque_nm, noise.gimbal_angle_rad].map(|white| noise.series(white, rows, period_s, draw));
+        let measured: Outputs = [beside, torque, gimbal];
         let floor = plus(&plus(&carried, &outputs, -1.0), &measured, 1.0);
         let whitener = Whitener::new(&floor, used, period_s);
         let mut bench = Self {

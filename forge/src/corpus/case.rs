@@ -30,9 +30,13 @@ pub(super) fn make(recipe: &Recipe, kind: Kind, index: usize) -> Case {
         }
     };
     let world = &world;
-    let samples = setting.scene.run(&world.truth, &setting.scene.track, FINE_STEPS);
+    let (rows, before) = (setting.scene.rows(), setting.scene.before);
+    let (seen, beside) = setting.noise.on_pickoff(rows, before, PERIOD_S, &mut draw);
+    let mut shaken = world.truth.clone();
+    shaken.drive.noise_rad = seen;
+    let samples = setting.scene.run(&shaken, &setting.scene.track, FINE_STEPS);
     let logged = setting.noise.on_inputs(&world.sensors.logged(&setting.scene.track), &mut draw);
-    let outputs = measured(&setting, world, &samples, &mut draw);
+    let outputs = measured(&setting, world, &samples, beside, &mut draw);
     let signals = signals(&setting, world, &logged, &outputs, &mut draw);
     let csv = text::csv(&columns(&setting, world, &logged, outputs, &samples, &mut draw));
     let answer = Answer {

@@ -14,15 +14,17 @@ use crate::scene::{CHANNELS, Outputs, Scene};
 use crate::sensors::{pickoff_rounded, rounded, torque_rounded};
 use crate::track::Track;
 
-/// The logged channels: outputs with noise and least counts.
-pub(super) fn measured(setting: &Setting, world: &World, samples: &[Sample], draw: &mut Draw) -> Outputs {
+/// The logged channels: outputs with noise and least counts; `pickoff_rad` is what the pick-off's has beside the samples.
+pub(super) fn measured(
+    setting: &Setting,
+    world: &World,
+    samples: &[Sample],
+    pickoff_rad: Vec<f64>,
+    draw: &mut Draw,
+) -> Outputs {
     let rows = samples.len();
     let mut series = |white: f64| setting.noise.series(white, rows, PERIOD_S, draw);
-    let noise = [
-        series(setting.noise.gyro_angle_rad),
-        series(setting.noise.motor_torque_nm),
-        series(setting.noise.gimbal_angle_rad),
-    ];
+    let noise = [pickoff_rad, series(setting.noise.motor_torque_nm), series(setting.noise.gimbal_angle_rad)];
     let mut outputs = Scene::outputs(world, samples);
     for (channel, noise) in outputs.iter_mut().zip(&noise) {
         for (value, noise) in channel.iter_mut().zip(noise) {

@@ -8,10 +8,11 @@ fn inside(spans: &[(f64, f64)], time_s: f64) -> bool {
 
 impl Machine<'_> {
     /// Keeps the command at the start of a step, for the delay, and what changes only from step to step.
-    pub(super) fn note_command(&mut self, time_s: f64) {
+    pub(super) fn note_command(&mut self, time_s: f64, pickoff_noise_rad: f64) {
         let drive = &self.truth.drive;
         if drive.delay_s > 0.0 || !drive.frozen_s.is_empty() {
-            let command = self.compensator.output_nm(&Self::servo(&self.states), self.seen(self.states[THETA]));
+            let seen = self.seen(self.states[THETA] + pickoff_noise_rad);
+            let command = self.compensator.output_nm(&Self::servo(&self.states), seen);
             if self.history.is_empty() {
                 self.history = vec![command; 4];
             }

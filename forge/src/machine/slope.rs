@@ -40,7 +40,7 @@ impl Machine<'_> {
             slope[THETA_RATE] = (self.float_torque_nm(states, stage) - config.gyro.damping_nm_s_per_rad * theta_rate)
                 / config.gyro.float_inertia_kg_m2;
         }
-        self.servo_slope(states, theta_rate, offset_s, &mut slope);
+        self.servo_slope(states, stage.pickoff_noise_rad, theta_rate, offset_s, &mut slope);
         if let Some([_, full_nm, time_s]) = self.truth.drive.heating {
             let load = torques.motor / full_nm;
             slope[HEAT] = (load * load - states[HEAT]) / time_s;
@@ -56,9 +56,9 @@ impl Machine<'_> {
         slope
     }
 
-    fn servo_slope(&self, states: &States, theta_rate: f64, offset_s: f64, slope: &mut States) {
+    fn servo_slope(&self, states: &States, noise_rad: f64, theta_rate: f64, offset_s: f64, slope: &mut States) {
         let servo = Self::servo(states);
-        let seen = self.seen(states[THETA]);
+        let seen = self.seen(states[THETA] + noise_rad);
         let servo_slope = self.compensator.slope(&servo, seen);
         slope[SERVO..SERVO + ORDER].copy_from_slice(&servo_slope);
         let mut command = self.compensator.output_nm(&servo, seen);

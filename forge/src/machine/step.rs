@@ -22,17 +22,20 @@ impl Machine<'_> {
         let (from, to) = track.around(row);
         let series = |place: usize| self.truth.torque.series_nm.get(place).copied().unwrap_or(0.0);
         let (extra_from, extra_to) = (series(row), series(row + 1));
+        let (noise_from, noise_to) = (self.pickoff_noise_rad(row), self.pickoff_noise_rad(row + 1));
+        let noise_at = |share: f64| noise_from + (noise_to - noise_from) * share;
         let known_at = |offset_s: f64, since_commit_s: f64, load_nm: Option<f64>, palmgren: &Palmgren| {
             let share = part + offset_s / track.period_s;
             let mut row = from.towards(to, share);
             row.external_nm += extra_from + (extra_to - extra_from) * share;
             let load_nm = load_nm.unwrap_or_else(|| palmgren.load_nm(row.accel_mps2));
-            Stage { row, load_nm, time_s: time_s + offset_s, since_commit_s }
+            let pickoff_noise_rad = noise_at(share);
+            Stage { row, load_nm, pickoff_noise_rad, time_s: time_s + offset_s, since_commit_s }
         };
         let stage_at = |palmgren: &Palmgren, offset_s: f64, since_commit_s: f64| {
             known_at(offset_s, since_commit_s, None, palmgren)
         };
-        self.note_command(time_s);
+        self.note_command(time_s, noise_at(part));
         let mut done_s = 0.0;
         while step_s - done_s > SHORTEST_S {
             // a step that was cut has other middles

@@ -57,7 +57,7 @@ pub struct Score {
     pub by_kind: Vec<Group>,
     /// By effect: logs with one effect, or beyond the table.
     pub by_effect: Vec<Group>,
-    /// By excitation.
+    /// By excitation, and those whose servo takes the pick-off's noise for motion.
     pub by_excitation: Vec<Group>,
     /// By size over the detectable one; logs with one effect.
     pub by_size: Vec<Group>,
@@ -202,6 +202,7 @@ impl Score {
             by_excitation: crate::excitation::Excitation::ALL
                 .iter()
                 .map(|kind| group(kind.name(), all.iter().copied().filter(|one| one.answer.excitation == *kind)))
+                .chain([group("noise in the loop", all.iter().copied().filter(|one| one.answer.noise.in_loop))])
                 .collect(),
             by_size: sizes(&all),
             confusion: confusion.into_iter().map(|((truth, named), count)| (truth, named, count)).collect(),
