@@ -7,9 +7,16 @@
 //! ```
 //!
 //! r: what a fit leaves of both channels, beyond `LEAST_HZ`, where hardly a torque is. A recorder's noise is in one of them
-//! alone, and their product has none of it.
+//! alone, and their product has none of it. Where no torque is logged, the pick-off's spectrum tells, which the loop gives a
+//! shape of its own, `P = |S|^2 N`:
+//!
+//! ```text
+//! rate^2 = sum over f of P |F|^2 / (2 pi f J)^2
+//! ```
 
 use std::f64::consts::TAU;
+
+use gimbal_servo::servo;
 
 use crate::fit::{Plans, servo_answer};
 use crate::record::Signal;
@@ -23,12 +30,28 @@ const NOTABLE: f64 = 0.5;
 /// Share of the slip rate below which it is no matter.
 const LEAST_OF_SLIP: f64 = 5e-4;
 
-/// Rms of the gimbal's rate that the loop's noise makes [rad/s]; none where it is no matter beside that of the logged rate, or
-/// where no torque is logged that would tell.
-pub(crate) fn shaken(Settled { problem, search, .. }: &Settled) -> Option<f64> {
-    let record = problem.record;
+/// Share of the pick-off's noise from which on it is in the loop, by its shape.
+const IN_LOOP: f64 = 0.4;
+/// Lines of a spectrum that is known by its shape.
+const LINES: u32 = 2048;
+
+/// Rms of the gimbal's rate that the loop's noise makes [rad/s]; none where it is no matter beside that of the logged rate.
+pub(crate) fn shaken(settled: &Settled) -> Option<f64> {
+    let record = settled.problem.record;
     let place = |signal| record.channels.iter().position(|channel| channel.signal == signal);
-    let places = [place(Signal::GyroAngle)?, place(Signal::MotorTorque)?];
+    let angle = place(Signal::GyroAngle)?;
+    let rate_radps = match place(Signal::MotorTorque) {
+        Some(torque) => with_torque(settled, [angle, torque]),
+        None => by_shape(settled, angle),
+    }?;
+    let slip_radps = settled.search.closest().physics.config.bearing.slip_rate_radps;
+    let least_radps = (NOTABLE * record.rate_noise.rms_radps).max(LEAST_OF_SLIP * slip_radps);
+    (rate_radps > least_radps).then_some(rate_radps)
+}
+
+/// From what both channels have of it.
+fn with_torque(Settled { problem, search, .. }: &Settled, places: [usize; 2]) -> Option<f64> {
+    let record = problem.record;
     let fit = search.closest();
     let residuals = problem.residual(&fit.prediction);
     let both = |row: usize| places.iter().all(|&place| record.channels[place].valid[row]);
@@ -44,15 +67,34 @@ pub(crate) fn shaken(Settled { problem, search, .. }: &Settled) -> Option<f64> {
         if hz < LEAST_HZ {
             continue;
         }
-        let per_torque = (TAU * hz * servo.gimbal_inertia_kg_m2).powi(-2);
         let answer = servo_answer(servo, hz, period_s) * angle;
-        square += (answer.conj() * torque).re * per_torque;
-        chance += 0.5 * answer.norm_sqr() * torque.norm_sqr() * per_torque * per_torque;
+        square += (answer.conj() * torque).re * per_torque(servo, hz);
+        chance += 0.5 * answer.norm_sqr() * torque.norm_sqr() * per_torque(servo, hz).powi(2);
     }
     let counted = valid.iter().filter(|valid| **valid).count().max(1) as f64;
     let mean = |sum: f64| 2.0 * sum / (plans.length() as f64 * counted);
-    let rate_radps = mean(square).max(0.0).sqrt();
-    let slip_radps = fit.physics.config.bearing.slip_rate_radps;
-    let least_radps = (NOTABLE * record.rate_noise.rms_radps).max(LEAST_OF_SLIP * slip_radps);
-    (square > SURE * chance.sqrt() && rate_radps > least_radps).then_some(rate_radps)
+    (square > SURE * chance.sqrt()).then(|| mean(square).sqrt())
+}
+
+/// From the shape of the pick-off's noise, where most of it is what the loop makes.
+fn by_shape(Settled { problem, search, .. }: &Settled, angle: usize) -> Option<f64> {
+    let period_s = problem.record.inputs.period_s;
+    let servo = &search.closest().physics.config.servo;
+    let (mut square, mut in_loop, mut all) = (0.0, 0.0, 0.0);
+    for line in 1..LINES {
+        let hz = 0.5 * f64::from(line) / (f64::from(LINES) * period_s);
+        if hz < LEAST_HZ {
+            continue;
+        }
+        let [own, every] = problem.in_loop_and_all(angle, hz);
+        square += own * servo_answer(servo, hz, period_s).norm_sqr() * per_torque(servo, hz);
+        in_loop += own;
+        all += every;
+    }
+    (in_loop > IN_LOOP * all).then(|| (square / f64::from(LINES)).sqrt())
+}
+
+/// Square of the gimbal's rate after a torque of some frequency, over that of the torque [(rad/s)^2 / (N m)^2].
+fn per_torque(servo: &servo::Config, hz: f64) -> f64 {
+    (TAU * hz * servo.gimbal_inertia_kg_m2).powi(-2)
 }

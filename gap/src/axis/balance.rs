@@ -192,6 +192,7 @@ impl Balance {
             least_share: LEAST_SHARE,
             nominal: Some(parameters),
             slip,
+            travel: motion.travel,
             within: within(model),
         };
         Self { motion, target, effort, needs, columns, base, problem, hidden, dead_zone_is_friction }

@@ -197,6 +197,7 @@ fn law(log: &AxisLog, model: &AxisModel, motion: &Motion) -> Law {
         least_share: 0.0,
         nominal: None,
         slip: Slip::default(),
+        travel: f64::INFINITY,
         within: errors.iter().map(|(_, gain, _)| BEYOND * controller.tolerance * gain.abs()).collect(),
     };
     let mut problem = problem;

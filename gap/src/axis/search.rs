@@ -1,5 +1,7 @@
 //! Which set of effects: forward steps and all pairs, exchanges and removals, judged on blocks that were not fitted.
 
+use std::f64::consts::PI;
+
 use rayon::prelude::*;
 
 use super::library::{NOMINAL, Shape};
@@ -30,6 +32,8 @@ pub(super) struct Problem {
     pub(super) nominal: Option<[f64; 3]>,
     /// Where friction must brake.
     pub(super) slip: Slip,
+    /// Travel of the position.
+    pub(super) travel: f64,
     /// How far each base column's amplitude may go before that is an effect.
     pub(super) within: Vec<f64>,
 }
@@ -227,8 +231,12 @@ impl Problem {
             !level && (fit[*index] + freed(*index)).abs() > **limit
         });
         let named = members.iter().filter(|&&m| !NOMINAL.contains(&self.candidates[m].shape));
-        // a spring has two amplitudes, an offset one
-        let springs = members.iter().filter(|&&m| self.candidates[m].shape == Shape::Spring);
+        // a spring has two amplitudes, an offset one; so has a wave of which less than a half shows
+        let springs = members.iter().filter(|&&m| match self.candidates[m].shape {
+            Shape::Spring => true,
+            Shape::Ripple { wave_number } => wave_number * self.travel < PI,
+            _ => false,
+        });
         beyond.count() + named.count() + springs.count()
     }
 

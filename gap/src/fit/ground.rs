@@ -15,7 +15,7 @@ use super::ripple;
 use super::shapes::{Impulse, Shapes};
 use super::signals::{Kept, Signals, peak, residual, scaled, valid};
 use super::slip::Slips;
-use super::turning::{at_once, impulse, mostly, remembered, turning_noise, turns};
+use super::turning::{at_once, impulse, mostly, nearly_turns, remembered, turning_noise, turns};
 use super::whiten::Loop;
 use super::{Columns, Fit, Problem, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, narrow, not_looked_for, nuisances, platform};
@@ -47,8 +47,9 @@ pub(crate) struct Ground<'a> {
     plans: Plans,
     shapes: Arc<Vec<Shapes>>,
     valid: Vec<bool>,
-    /// Rows at which the bearing turns around, and what the noise of the rate does there.
+    /// Rows at which the bearing turns around, or nearly does, and what the noise of the rate does there.
     turns: Vec<bool>,
+    nearly_turns: Vec<bool>,
     turned: OnceLock<Turned>,
     /// What the nominal parameters and a few effects do not explain.
     rest: OnceLock<Signals>,
@@ -115,6 +116,7 @@ impl<'a> Ground<'a> {
             plans,
             valid: valid(record),
             turns: turns(&base, record, &nominal),
+            nearly_turns: nearly_turns(&base, record, &nominal),
             base,
             begin,
             nominal,
@@ -185,7 +187,7 @@ impl<'a> Ground<'a> {
             whitener,
             path,
             turns_mostly: mostly(&self.turns),
-            turns: self.turns.clone(),
+            turns: self.nearly_turns.clone(),
             noise: self.noise.clone(),
             ceiling_nm: self.offer.sees_torque.then_some(self.offer.peak_torque_nm),
             sigma,

@@ -95,9 +95,13 @@ impl Slow {
 }
 
 impl Noise {
-    pub(super) fn power(&self, hz: f64, [inputs, in_loop @ ..]: [f64; 4]) -> f64 {
-        let in_loop: f64 = self.in_loop.iter().zip(in_loop).map(|(size, shape)| size * shape).sum();
-        self.white + self.inputs * inputs + in_loop + self.low * self.slow.at(hz)
+    pub(super) fn power(&self, hz: f64, shapes: [f64; 4]) -> f64 {
+        self.white + self.inputs * shapes[0] + self.of_loop(shapes) + self.low * self.slow.at(hz)
+    }
+
+    /// Of the pick-off in the loop.
+    pub(super) fn of_loop(&self, [_, shapes @ ..]: [f64; 4]) -> f64 {
+        self.in_loop.iter().zip(shapes).map(|(size, shape)| size * shape).sum()
     }
 
     /// At the lines of a transform. Below what was measured it does not fall: which of the shapes the noise has, a few

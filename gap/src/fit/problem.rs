@@ -79,7 +79,7 @@ pub struct Problem<'a> {
     pub path: Path,
     /// Whether it hardly ever moves one way for long.
     pub turns_mostly: bool,
-    /// Rows at which it does.
+    /// Rows at which it does, or nearly.
     pub turns: Vec<bool>,
     /// Rms of the noise of each channel.
     pub noise: Vec<f64>,
@@ -162,6 +162,14 @@ impl<'a> Problem<'a> {
     pub(crate) fn torque_at_random(&self, whitened: &[f64], rows: &[bool], inputs_nm: f64) -> f64 {
         let most = (inputs_nm / self.impulse_nm).powi(2);
         self.whitener.beyond_inputs(whitened, rows, &self.shapes, most, self.record.inputs.period_s)
+    }
+
+    /// Power of a channel's noise at a frequency, what the loop makes of the pick-off's and all of it, where 1 is white noise of
+    /// one unit.
+    pub(crate) fn in_loop_and_all(&self, channel: usize, hz: f64) -> [f64; 2] {
+        let (noise, shapes) = (&self.whitener.noise[channel], self.shapes[channel].at(hz));
+        let unit = self.noise[channel].powi(2);
+        [noise.of_loop(shapes), noise.power(hz, shapes)].map(|power| unit * power)
     }
 
     /// A torque on the gimbal as the whitened channels show it [N m].

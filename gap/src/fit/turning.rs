@@ -11,6 +11,8 @@ const IMPULSE_RADPS: f64 = 1e-3;
 const SELDOM: f64 = 0.25;
 /// Rows of one turn, in the mean, from which on it is slow.
 pub(super) const SLOWLY: usize = 16;
+/// How far from the slip rate a turn is none, over the rate's noise.
+const NEARLY: f64 = 3.0;
 /// Rows for which the loop remembers a disturbance.
 const AFTER_TURNING: usize = 400;
 
@@ -48,7 +50,15 @@ pub(crate) fn impulse_nm(base: &Physics, record: &Record) -> f64 {
 
 /// Rows at which the bearing turns around: within the slip rate, or past it from one row to the next.
 pub(crate) fn turns(base: &Physics, record: &Record, nominal: &Prediction) -> Vec<bool> {
-    let slip_radps = base.config.bearing.slip_rate_radps;
+    within(base.config.bearing.slip_rate_radps, record, nominal)
+}
+
+/// The same, and those at which it nearly does: noise of the rate may make a turn of it.
+pub(crate) fn nearly_turns(base: &Physics, record: &Record, nominal: &Prediction) -> Vec<bool> {
+    within(base.config.bearing.slip_rate_radps + NEARLY * record.rate_noise.rms_radps, record, nominal)
+}
+
+fn within(slip_radps: f64, record: &Record, nominal: &Prediction) -> Vec<bool> {
     let slips = record.inputs.slip_radps(nominal);
     let mut turns = vec![false; slips.len()];
     for k in 1..slips.len() {

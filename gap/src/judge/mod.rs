@@ -26,6 +26,7 @@ mod spread;
 mod strange;
 mod stretch;
 mod torques;
+mod turned;
 mod weigh;
 
 pub(crate) use against::{HELPS, NEVER, at_a_bound, beyond};

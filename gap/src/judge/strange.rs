@@ -21,6 +21,7 @@ use super::group::On;
 use super::input_noise::torque_of_inputs;
 use super::left_over::steady;
 use super::torques::groups;
+use super::turned::Change;
 use crate::fit::{Fit, Linear, Problem, Solution, gram, slices, solve};
 
 /// Amplitude that a torque must have beside those before it, over its own: of torques that are nearly alike a difference as
@@ -37,7 +38,8 @@ const AGREED_COUNTS: f64 = 2.0;
 /// The same of the power of one sensor, whose own noise may have a spectrum not unlike it.
 const LIKE_NOISE_COUNTS: f64 = 0.5;
 /// What of a torque on the float is to be seen where the bearing does not turn around, and what its choice costs where it is not
-/// [nats]: there the rate's noise shifts the turn, as a drift of the float does.
+/// [nats]: at turns the rate's noise shifts them, as a drift of the float does. Of one that is next to nothing elsewhere, what is
+/// told there alone counts.
 const SEEN_AWAY: f64 = 8.0;
 const ELSEWHERE_NATS: f64 = 40.0;
 /// Precision of a torque's size: none, but for what keeps equations regular.
@@ -94,6 +96,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let base = solved(&fit.sensitivities);
     let left = less(&fit.residual, base.as_ref(), &linear.columns, &fit.sensitivities);
     let away = steady(problem);
+    let every = vec![true; away.len()];
     let mut strangers: Vec<Stranger> = groups(problem, fit)
         .into_par_iter()
         .map(|group| {
@@ -107,7 +110,11 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
                 Stranger { of: group.of, gain: gain[0] - gain[1], torques, choice: group.choice, counts: 1.0 };
             if group.on == On::Float && own.nats() > SEEN_AWAY {
                 let then = less(&fit.residual, with.as_ref(), &linear.columns, &others);
-                if told_by(&left, &then, &away) < SEEN_AWAY {
+                let [seen, all] = [&away, &every].map(|rows| Change::new(&left, &then, rows));
+                if seen.is_elsewhere(&all) {
+                    own.gain = own.gain.min(torques as f64 + 2.0 * seen.told());
+                }
+                if seen.told() < SEEN_AWAY {
                     own.choice += ELSEWHERE_NATS;
                 }
             }
@@ -134,20 +141,6 @@ fn less(residual: &[f64], solution: Option<&Solution>, fixed: &[Vec<f32>], other
         left.iter_mut().zip(column).for_each(|(left, own)| *left -= coefficient * f64::from(*own));
     }
     left
-}
-
-/// What some rows say of what changes one residual into another [nats]: `(d . r)^2 / (2 d . d)`.
-fn told_by(before: &[f64], after: &[f64], rows: &[bool]) -> f64 {
-    let width = before.len() / rows.len().max(1);
-    let (mut along, mut square) = (0.0, 0.0);
-    for (row, _) in rows.iter().enumerate().filter(|(_, counts)| **counts) {
-        for k in row * width..(row + 1) * width {
-            let change = before[k] - after[k];
-            along += change * before[k];
-            square += change * change;
-        }
-    }
-    if along > 0.0 { 0.5 * along * along / square } else { 0.0 }
 }
 
 /// How far the channels agree on a torque, in standard deviations, beyond what noise of the logged inputs is to the

@@ -5,12 +5,14 @@ use gimbal_model_file::Tolerance;
 use super::against::against;
 use super::set::is_part;
 use super::stretch::carried_alone;
+use super::turned::at_turns_alone;
 use crate::fit::{Fit, Glimpse, Problem, Search, closed_at, first_of_each, glimpses_beside};
 use crate::library::{NAMED, releases};
 
 /// Evidence that a nominal parameter beyond its tolerance must bring to be named [nats].
 pub(crate) const COST_OF_SHIFT: f64 = 15.0;
-/// How much more where the bearing turns around most of the time: its friction is as good as unknown there.
+/// How much more where the bearing turns around most of the time: its friction is as good as unknown there; and for an effect
+/// that is seen at turns alone.
 const TURNING: f64 = 2.0;
 /// The same after a stop: what follows one hangs on it by more than a line.
 const AFTER_STOP: f64 = 1.25;
@@ -76,6 +78,8 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         .map(|(index, fit)| {
             let evidence = fit.evidence(temper) - search.null.evidence(temper) - alone(search, fit) / temper;
             let (cost, rare) = costs(problem, &fit.set.0);
+            let shifting = (TURNING - 1.0) * at_turns_alone(problem, search, fit) as f64;
+            let (cost, rare) = (cost + shifting * NAMED, rare + shifting * RARE);
             let nats = evidence - against(problem, search, fit, tolerance);
             Weighed { effects: names(fit), fit: Some(index), nats, cost, rare }
         })

@@ -1,7 +1,7 @@
-//! A weight on an arm behind a gear: gravity, and friction that grows with what the gear carries.
+//! A weight on an arm behind a gear: gravity, and friction that grows with what the gear carries; or a spring on it.
 //!
 //! ```text
-//! u = N + r |N| sgn v        N = J a + B v + G sin q
+//! u = N + r |N| sgn v        N = J a + B v + G(q)
 //! ```
 
 use std::fmt::Write;
@@ -19,7 +19,7 @@ const ROWS_HZ: f64 = 188.0;
 const COUNT_RAD: f64 = std::f64::consts::TAU / 4096.0;
 
 /// A sweep, whose effort is the equation's.
-fn log(gravity_v: f64, load_ratio: f64) -> String {
+fn log(load_v: impl Fn(f64) -> f64, load_ratio: f64) -> String {
     let mut out = String::from("t,q,u\n");
     for k in 0..1500 {
         let t = f64::from(k) / ROWS_HZ;
@@ -27,22 +27,22 @@ fn log(gravity_v: f64, load_ratio: f64) -> String {
         let (q, v) = (phase.sin(), rate * phase.cos());
         let a = 1.2 * phase.cos() - rate * rate * phase.sin();
         let turning = (v / 0.05).clamp(-1.0, 1.0);
-        let need = 0.064 * a + 0.42 * v + gravity_v * q.sin();
+        let need = 0.064 * a + 0.42 * v + load_v(q);
         let u = need + turning * (0.18 + load_ratio * need.abs());
         let _ = writeln!(out, "{t:.6},{:.9},{u:.4}", (q / COUNT_RAD).round() * COUNT_RAD);
     }
     out
 }
 
-fn diagnosed(gravity_v: f64, load_ratio: f64) -> AxisDiagnosis {
+fn diagnosed(load_v: impl Fn(f64) -> f64, load_ratio: f64) -> AxisDiagnosis {
     let model = AxisModel::parse(MODEL, "arm.toml").expect("reads").expect("an axis");
-    let log = AxisLog::read(log(gravity_v, load_ratio).as_bytes(), Path::new("arm.csv"), &model).expect("reads");
+    let log = AxisLog::read(log(load_v, load_ratio).as_bytes(), Path::new("arm.csv"), &model).expect("reads");
     diagnose(log, &model, Vec::new())
 }
 
 #[test]
 fn cross_friction_of_the_load_is_told_beside_the_gravity_that_is_the_load() {
-    let diagnosis = diagnosed(4.5, 0.3);
+    let diagnosis = diagnosed(|q| 4.5 * q.sin(), 0.3);
     let mut found: Vec<(&str, f64)> =
         diagnosis.found.iter().map(|found| (found.effect.as_str(), found.parameters[0].value)).collect();
     found.sort_by(|a, b| a.0.cmp(b.0));
@@ -54,8 +54,10 @@ fn cross_friction_of_the_load_is_told_beside_the_gravity_that_is_the_load() {
 }
 
 #[test]
-fn cross_an_arm_without_such_a_friction_has_gravity_alone() {
-    let diagnosis = diagnosed(4.5, 0.0);
-    let found: Vec<&str> = diagnosis.found.iter().map(|found| found.effect.as_str()).collect();
-    assert_eq!(found, ["torque_ripple"], "{}", text(&diagnosis));
+fn cross_an_arm_has_gravity_alone_and_a_spring_on_it_is_a_spring() {
+    let [gravity, spring] = [diagnosed(|q| 4.5 * q.sin(), 0.0), diagnosed(|q| 4.5 * q, 0.0)];
+    for (effect, diagnosis) in [("torque_ripple", gravity), ("cable_spring", spring)] {
+        let found: Vec<&str> = diagnosis.found.iter().map(|found| found.effect.as_str()).collect();
+        assert_eq!(found, [effect], "{}", text(&diagnosis));
+    }
 }
