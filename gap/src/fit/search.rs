@@ -51,6 +51,8 @@ const FAR: f64 = 2e3;
 /// How often it is taken further at most, and what of its square it leaves as long as it gets there.
 const MOST_TURNS: usize = 5;
 const GOES_ON: f64 = 0.95;
+/// What the shifts of nominal parameters cost that are none any more: what stands for effects so large is no null.
+const NOT_NOMINAL: f64 = 1e3;
 /// How often sets that are less than the best are tried, while that changes.
 const BACKWARDS: usize = 2;
 /// Most effects of a set.
@@ -234,7 +236,7 @@ fn widen(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>, size: usize) {
 fn from_there(problem: &Problem, null: Fit, fits: &[Fit]) -> (Fit, bool) {
     let Some(best) = fits.first() else { return (null, false) };
     let again = refine(problem, &Set::default(), &[], Some(best), Effort::Full);
-    let further = again.volume.is_finite() && again.cost() < null.cost();
+    let further = again.volume.is_finite() && again.cost() < null.cost() && again.prior < NOT_NOMINAL;
     let moved = further && null.cost() - again.cost() > 1.0;
     (if further { again } else { null }, moved)
 }

@@ -43,6 +43,8 @@ const EXACT: [&str; 15] = [
 ];
 /// Share of what a set is worth that the best of its effects is worth alone, times their number.
 const ALONE: f64 = 0.4;
+/// How much worse than without its effect a fit is that has lost its way.
+const LOST: f64 = 10.0;
 /// What an effect that was not worth a fit brings at most [nats].
 const HIDDEN: f64 = 3.0;
 /// A set of effects.
@@ -158,9 +160,11 @@ fn against_each_other(sets: &mut [Weighed], alone: impl Fn(&str) -> Option<f64>)
     }
 }
 
-/// Evidence of an effect by itself, from its fit or else from the linear equations [nats].
+/// Evidence of an effect by itself, from its fit or else from the linear equations [nats]. A fit that is worse than the
+/// nominal parameters alone, which it has too, has not found its way.
 fn alone_worth(problem: &Problem, search: &Search, effect: &str, temper: f64) -> Option<f64> {
-    let fitted = search.fits.iter().filter(|fit| fit.effects == [effect]);
+    let found = |fit: &&Fit| fit.effects == [effect] && fit.cost() < search.null.cost() + temper * LOST;
+    let fitted = search.fits.iter().filter(found);
     let fitted = fitted.map(|fit| fit.evidence(temper) - search.null.evidence(temper)).reduce(f64::max);
     let own = |glimpse: &&Glimpse| problem.candidates[glimpse.index].effect == effect;
     fitted.or_else(|| search.glimpses.iter().find(own).map(|glimpse| glimpse.gain / temper))

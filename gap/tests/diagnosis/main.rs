@@ -101,6 +101,18 @@ fn two_effects_at_once_are_both_named() {
 }
 
 #[test]
+fn parameters_far_beyond_their_tolerance_are_no_nominal_ones() {
+    // both together are what nominal parameters that go anywhere are, and each alone is nothing
+    for excitation in [Excitation::Manoeuvre, Excitation::Flight] {
+        let effects = vec![("loop_gain", vec![-0.5]), ("torque_scale", vec![-0.41])];
+        let case = Case { seed: 23, excitation, seconds: 14.0, effects, drift: 0.6, noise: 0.3 };
+        let mut found = names(&diagnose(&as_log(&simulate(&case)), &ModelFile::default()));
+        found.sort_unstable();
+        assert_eq!(found, ["loop_gain", "torque_scale"], "{excitation:?}");
+    }
+}
+
+#[test]
 fn the_report_keeps_its_schema() {
     let diagnosis = diagnose(&log_with(Excitation::RateTable, &[typical("viscous_friction")]), &ModelFile::default());
     let report = report(&diagnosis);
