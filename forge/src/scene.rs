@@ -1,7 +1,9 @@
 //! A track, where the record begins on it, and what the instruments would show there without noise.
 
+use crate::draw::Draw;
 use crate::effects::{Scale, World};
 use crate::machine::{Loads, Machine, Sample};
+use crate::sensors::Noise;
 use crate::track::Track;
 use crate::truth::Truth;
 
@@ -28,6 +30,18 @@ impl Scene {
     #[must_use]
     pub fn rows(&self) -> usize {
         self.track.rows.len() - self.before
+    }
+
+    /// A platform whose servo sees noise of the pick-off, and what is logged beside what it sees, one value a row of the record.
+    #[must_use]
+    pub fn shaken(&self, truth: &Truth, noise: &Noise, draw: &mut Draw) -> (Truth, Vec<f64>) {
+        let mut shaken = truth.clone();
+        let mut series = noise.series(noise.gyro_angle_rad, self.track.rows.len(), self.track.period_s, draw);
+        if noise.in_loop {
+            shaken.drive.noise_rad = series;
+            return (shaken, vec![0.0; self.rows()]);
+        }
+        (shaken, series.split_off(self.before))
     }
 
     /// Runs a platform along the track of the scene, or along another one of the same length.

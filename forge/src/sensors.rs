@@ -130,14 +130,6 @@ impl Noise {
         Track { period_s: track.period_s, rows }
     }
 
-    /// Noise of the pick-off: what the servo sees of it, one value a row of the track, and what is logged beside that, one a
-    /// row of the record.
-    #[must_use]
-    pub fn on_pickoff(&self, rows: usize, before: usize, period_s: f64, draw: &mut Draw) -> (Vec<f64>, Vec<f64>) {
-        let mut noise = self.series(self.gyro_angle_rad, rows + before, period_s, draw);
-        if self.in_loop { (noise, vec![0.0; rows]) } else { (Vec::new(), noise.split_off(before)) }
-    }
-
     /// White and coloured noise of standard deviation `white`, one value a row.
     #[must_use]
     pub fn series(&self, white: f64, rows: usize, period_s: f64, draw: &mut Draw) -> Vec<f64> {

@@ -9,7 +9,6 @@ use crate::effects::{Effect, Scale, World, block_of, library_names};
 use crate::machine::{Loads, Sample};
 use crate::scene::{Outputs, Scene};
 use crate::sensors::Noise;
-use crate::track::Track;
 
 /// Integration steps between rows where only differences count: 4 kHz.
 pub(super) const STEPS: usize = 4;
@@ -74,15 +73,12 @@ impl<'a> Bench<'a> {
         draw: &mut Draw,
         steps: usize,
     ) -> Self {
-        let run = |world: &World, track: &Track| scene.run(&world.truth, track, steps);
         let loads = Loads::new(&base.truth.config.bearing, &scene.track, steps);
         let samples = scene.run_with(&base.truth, &scene.track, steps, Some(&loads));
         let outputs = Scene::outputs(base, &samples);
         let (rows, period_s) = (scene.rows(), scene.track.period_s);
-        let (seen, beside) = noise.on_pickoff(rows, scene.before, period_s, draw);
-        let mut shaken = base.clone();
-        shaken.truth.drive.noise_rad = seen;
-        let carried = Scene::outputs(base, &run(&shaken, &noise.on_inputs(&scene.track, draw)));
+        let (shaken, beside) = scene.shaken(&base.truth, noise, draw);
+        let carried = Scene::outputs(base, &scene.run(&shaken, &noise.on_inputs(&scene.track, draw), steps));
         let [torque, gimbal] =
             [noise.motor_torque_nm, noise.gimbal_angle_rad].map(|white| noise.series(white, rows, period_s, draw));
         let measured: Outputs = [beside, torque, gimbal];
@@ -102,7 +98,7 @@ impl<'a> Bench<'a> {
             nuisances: Vec::new(),
             pickoff_rad: noise.gyro_angle_rad,
         };
-        bench.logged = Some(Scene::outputs(base, &run(base, &base.sensors.logged(&scene.track))));
+        bench.logged = Some(Scene::outputs(base, &scene.run(&base.truth, &base.sensors.logged(&scene.track), steps)));
         for name in NAMES.into_iter().chain(TURNS) {
             // a stop that is never touched has no sensitivity
             if name == "stop_angle" && !bench.samples.iter().any(|sample| sample.on_stop) {

@@ -30,10 +30,7 @@ pub(super) fn make(recipe: &Recipe, kind: Kind, index: usize) -> Case {
         }
     };
     let world = &world;
-    let (rows, before) = (setting.scene.rows(), setting.scene.before);
-    let (seen, beside) = setting.noise.on_pickoff(rows, before, PERIOD_S, &mut draw);
-    let mut shaken = world.truth.clone();
-    shaken.drive.noise_rad = seen;
+    let (shaken, beside) = setting.scene.shaken(&world.truth, &setting.noise, &mut draw);
     let samples = setting.scene.run(&shaken, &setting.scene.track, FINE_STEPS);
     let logged = setting.noise.on_inputs(&world.sensors.logged(&setting.scene.track), &mut draw);
     let outputs = measured(&setting, world, &samples, beside, &mut draw);

@@ -3,7 +3,7 @@
 use gimbal_model_file::Tolerance;
 use gimbal_plant::{Bound, Effect, Parameter};
 
-use super::set::is_part;
+use super::set::with_one_less;
 use crate::fit::{Fit, Problem, Search};
 
 /// A parameter at the end of its range [nats].
@@ -56,13 +56,7 @@ fn beside_presliding(at_a_bound: f64) -> f64 {
 
 /// Whether a fit is worth more with an effect than without it, though size and shape stand for each other.
 fn helps(search: &Search, fit: &Fit, place: usize) -> bool {
-    let without = |other: &&Fit| {
-        other.set.0.len() + 1 == fit.set.0.len()
-            && is_part(&other.effects, &fit.effects)
-            && !other.effects.contains(&fit.effects[place])
-    };
-    let alone = fit.set.0.len() == 1;
-    let mut smaller = search.fits.iter().filter(without).chain(alone.then_some(&search.null)).peekable();
+    let mut smaller = with_one_less(search, fit, fit.effects[place]).peekable();
     smaller.peek().is_some() && smaller.all(|smaller| smaller.square - fit.square > 2.0 * HELPS)
 }
 

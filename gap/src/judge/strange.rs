@@ -96,7 +96,6 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let base = solved(&fit.sensitivities);
     let left = less(&fit.residual, base.as_ref(), &linear.columns, &fit.sensitivities);
     let away = steady(problem);
-    let every = vec![true; away.len()];
     let mut strangers: Vec<Stranger> = groups(problem, fit)
         .into_par_iter()
         .map(|group| {
@@ -110,8 +109,8 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
                 Stranger { of: group.of, gain: gain[0] - gain[1], torques, choice: group.choice, counts: 1.0 };
             if group.on == On::Float && own.nats() > SEEN_AWAY {
                 let then = less(&fit.residual, with.as_ref(), &linear.columns, &others);
-                let [seen, all] = [&away, &every].map(|rows| Change::new(&left, &then, rows));
-                if seen.is_elsewhere(&all) {
+                let seen = Change::new(&left, &then, &away);
+                if seen.is_at_turns() {
                     own.gain = own.gain.min(torques as f64 + 2.0 * seen.told());
                 }
                 if seen.told() < SEEN_AWAY {

@@ -3,6 +3,7 @@
 use gimbal_model_file::Tolerance;
 
 use super::against::against;
+use super::left_over::steady;
 use super::set::is_part;
 use super::stretch::carried_alone;
 use super::turned::at_turns_alone;
@@ -73,6 +74,7 @@ impl Weighed {
 pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Vec<Weighed> {
     let closest = search.closest();
     let temper = search.temper(problem);
+    let away = steady(problem);
     let mut all: Vec<Weighed> = search
         .fits
         .iter()
@@ -80,7 +82,7 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         .map(|(index, fit)| {
             let evidence = fit.evidence(temper) - search.null.evidence(temper) - alone(search, fit) / temper;
             let (cost, rare) = costs(problem, &fit.set.0);
-            let shifting = (TURNING - 1.0) * at_turns_alone(problem, search, fit) as f64;
+            let shifting = (TURNING - 1.0) * at_turns_alone(search, fit, &away) as f64;
             let (cost, rare) = (cost + shifting * NAMED, rare + shifting * RARE);
             let nats = evidence - against(problem, search, fit, tolerance);
             Weighed { effects: names(fit), fit: Some(index), nats, cost, rare }
