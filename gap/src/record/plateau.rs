@@ -13,6 +13,8 @@ const ONWARD: f64 = 7.0;
 /// The same over the scatter on the plateau: wherever the stop is, the float stands still on it as no peak does.
 const ENTERS: f64 = 30.0;
 const FLAT: f64 = 150.0;
+/// The least of that over the scatter: where friction turns around, a peak can be as sudden, but it is none the less round.
+const ROUND: f64 = 60.0;
 /// How near the nominal stop it is the likeliest that holds a float still, and the same there.
 const NEAR: f64 = 0.1;
 const ENTERS_NEAR: f64 = 4.0;
@@ -56,12 +58,12 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
         // it comes in with a rate, and stands still at once
         let came = start.checked_sub(least).map_or(0.0, |before| peak - theta_rad[before].abs());
         let onward = came * 0.5 * (k - start) as f64 / least as f64;
-        let steep = came > CAME * band && onward > ONWARD * band;
-        let flat = || {
+        let steep = came > CAME * band && onward > ONWARD * band && peak > LEAST_STOP * stop_rad;
+        let stands_still = || {
             let scatter = scatter_rad(&theta_rad[start..k]).max(least_scatter);
-            came > enters * scatter && onward > lasts * scatter
+            steep && onward > ROUND * scatter || came > enters * scatter && onward > lasts * scatter
         };
-        if k - start > least && (steep && peak > LEAST_STOP * stop_rad || flat()) {
+        if k - start > least && stands_still() {
             level.extend(theta_rad[start..k].iter().map(|value| value.abs()));
             on_stop[start..k].fill(true);
         }
@@ -129,6 +131,23 @@ mod tests {
                 swung(peak_rad, f64::MAX).iter().map(|angle| step_rad * (angle / step_rad).round()).collect();
             assert_eq!(plateau(&read, 1e-3, 50.0 * STOP_RAD), None, "{peak_rad} in steps");
         }
+    }
+
+    #[test]
+    fn closed_form_a_peak_where_friction_turns_around_is_no_stop() {
+        // comes in at 2.8e-5 rad a row, is turned back within five of them, and goes slowly
+        let angle = |k: usize| {
+            let rows = k as f64 - 1000.0;
+            let falls_rad = match rows {
+                rows if rows < -5.0 => 7e-5 + 2.8e-5 * (-5.0 - rows),
+                rows if rows < 0.0 => 2.8e-6 * rows * rows,
+                rows => 3e-7 * rows * rows,
+            };
+            (4.5e-3 - falls_rad).max(0.0)
+        };
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let read: Vec<f64> = (0..2000).map(|k| angle(k) + 2e-6 * rng.sample::<f64, _>(StandardNormal)).collect();
+        assert_eq!(plateau(&read, 1e-3, STOP_RAD), None);
     }
 
     #[test]
