@@ -22,6 +22,9 @@ const ROW_S: f64 = 1e-3;
 /// Yields of the springs [rad], alike in their shares of the friction: in a geometric row.
 const YIELDS_RAD: [f64; 5] = [6e-7, 1.2e-6, 2.4e-6, 4.8e-6, 9.6e-6];
 
+/// Noise of a poor accelerometer [m/s2].
+const FORCE_NOISE_MPS2: f64 = 0.04;
+
 const PHI: usize = 0;
 const PHI_RATE: usize = 1;
 const THETA: usize = 2;
@@ -216,6 +219,29 @@ fn stops_that_yield_one_after_the_other_are_a_cable() {
     for ((value, error), truth) in found.values.iter().zip(&found.errors).zip([torque_nm, displacement_rad]) {
         assert!((value - truth).abs() < 2.0 * error, "{value:e} +- {error:e} of {truth:e}");
     }
+}
+
+#[test]
+fn an_unbalance_is_no_smaller_for_noise_of_a_force_that_hardly_changes() {
+    let swings = |k: u32| {
+        let at = |radps: f64| (1e-3 * radps * f64::from(k)).sin();
+        Row {
+            accel_x_mps2: 2.1 + 0.08 * at(1.3),
+            accel_y_mps2: 9.5 + 0.04 * at(1.7),
+            accel_z_mps2: 0.6 * at(0.9),
+            vehicle_rate_radps: 0.2 * at(7.1) + 0.15 * at(11.3) + 0.05 * at(23.0),
+            ..Row::default()
+        }
+    };
+    let rows: Vec<Row> = (0..30_000).map(swings).collect();
+    let mut noisy = simulated(&Elements::none(), &rows, 0.0);
+    let mut rng = rng(SEED, 5);
+    for (place, noise) in [(1, FORCE_NOISE_MPS2), (2, FORCE_NOISE_MPS2), (3, FORCE_NOISE_MPS2), (6, 1.4e-6)] {
+        noisy.columns[place].iter_mut().for_each(|value| *value += noise * rng.sample::<f64, _>(StandardNormal));
+    }
+    let diagnosis = diagnose(&as_log(&noisy), &ModelFile::default());
+    let notes = diagnosis.decision.as_ref().map(|decision| &decision.notes);
+    assert_eq!(diagnosis.verdict(), Verdict::NoGap, "{notes:?}");
 }
 
 #[test]

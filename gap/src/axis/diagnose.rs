@@ -144,6 +144,13 @@ pub fn diagnose(log: AxisLog, model: &AxisModel, unseen: Vec<(String, AxisLog)>)
     words.extend(law.words);
     shrunk.extend(unseen.into_iter().flatten());
     notes.extend(remarks(&found, model, &balance));
+    notes.extend(judged.crumbs.iter().map(|crumb| {
+        format!(
+            "{} takes {:.1} % of the gap's power beside them, as another make of what is named may do: fitted, not named",
+            crumb.effect,
+            100.0 * crumb.removes
+        )
+    }));
     notes.extend(offset_instead(&balance, &best, model));
     let lines = Lines {
         time_s: motion.rows.iter().map(|&row| log.first_s + motion.time_s(row)).collect(),

@@ -5,6 +5,7 @@ use gimbal_model_file::AxisModel;
 use super::balance::Balance;
 use super::columns::{Checked, ColumnFault};
 use super::judge::{Found, Judged, judge};
+use super::motion::Motion;
 use super::ready::ready;
 use super::search::Set;
 use super::table::AxisLog;
@@ -13,6 +14,10 @@ use crate::judge::Verdict;
 /// Bands that are tried where noise hides effects: each is this share of the one before.
 const NARROWER: f64 = 0.6;
 const NARROWINGS: usize = 4;
+/// Rows that a band must leave.
+const LEAST_ROWS: usize = 100;
+/// Bands in which something must be the same where the widest one shows nothing.
+const BENEATH: usize = 3;
 /// Which of its columns is wrong where position and rate differ by a factor.
 const SCALES: [&str; 3] = ["position_scale", "velocity_scale", "time_scale"];
 
@@ -29,7 +34,11 @@ pub(super) struct Looked {
 
 impl Looked {
     fn new(log: AxisLog, model: AxisModel) -> Self {
-        let (log, checked, motion) = ready(log, &model);
+        let made = ready(log, &model);
+        Self::of(made, model)
+    }
+
+    fn of((log, checked, motion): (AxisLog, Checked, Motion), model: AxisModel) -> Self {
         let (balance, best) = Balance::searched(motion, &model);
         let judged = judge(&balance, &best, &model);
         Self { model, log, checked, balance, best, judged }
@@ -38,7 +47,8 @@ impl Looked {
     /// In the widest band that its noise allows, or closer.
     pub(super) fn closely(log: AxisLog, model: &AxisModel) -> Self {
         let (wide, instead) = Self::whichever_scale(&log, model);
-        let mut closest = wide.narrowed(&log).unwrap_or(wide);
+        let narrower = if wide.judged.verdict == Verdict::NoGap { wide.beneath(&log) } else { wide.narrowed(&log) };
+        let mut closest = narrower.unwrap_or(wide);
         closest.checked.words.extend(instead);
         closest
     }
@@ -66,14 +76,36 @@ impl Looked {
     /// In a narrower band, where effects explain it there, no more of them, that noise hides in this one.
     fn narrowed(&self, log: &AxisLog) -> Option<Self> {
         let hidden = &self.balance.hidden;
-        if self.model.band_hz.is_some() || self.judged.verdict == Verdict::NoGap || hidden.is_empty() {
+        if self.model.band_hz.is_some() || hidden.is_empty() {
             return None;
         }
         let most = if self.judged.verdict == Verdict::Unexplained { usize::MAX } else { self.judged.found.len() };
-        let bands_hz = std::iter::successors(Some(NARROWER * self.balance.motion.band_hz), |hz| Some(NARROWER * hz));
-        let narrow = |band_hz| Self::new(log.clone(), AxisModel { band_hz: Some(band_hz), ..self.model.clone() });
         let better = |narrow: &Self| narrow.judged.found.len() <= most && narrow.explains_by(hidden);
-        bands_hz.take(NARROWINGS).map(narrow).find(better)
+        self.closer(log).find(better)
+    }
+
+    /// Where nothing stands out of the noise of the wide band: the narrower one in which something does, if a still narrower one
+    /// says the same of it.
+    fn beneath(&self, log: &AxisLog) -> Option<Self> {
+        if self.model.band_hz.is_some() {
+            return None;
+        }
+        let mut closer = self.closer(log).take(BENEATH);
+        let first = closer.next().filter(|first| first.judged.verdict == Verdict::Explained)?;
+        let named = |own: &Self| -> Vec<String> { own.judged.found.iter().map(|found| found.effect.clone()).collect() };
+        let agrees = |other: Self| other.judged.verdict == Verdict::Explained && named(&other) == named(&first);
+        closer.all(agrees).then_some(first)
+    }
+
+    /// The same log in narrower bands, one after the other, as long as rows are left.
+    fn closer<'a>(&'a self, log: &'a AxisLog) -> impl Iterator<Item = Self> + 'a {
+        let bands_hz = std::iter::successors(Some(NARROWER * self.balance.motion.band_hz), |hz| Some(NARROWER * hz));
+        let narrow = |band_hz| {
+            let model = AxisModel { band_hz: Some(band_hz), ..self.model.clone() };
+            let made = ready(log.clone(), &model);
+            (made.2.rows.len() >= LEAST_ROWS).then(|| Self::of(made, model))
+        };
+        bands_hz.take(NARROWINGS).map_while(narrow)
     }
 
     /// Effects of its balance, parameters beyond their tolerance among them.

@@ -1,14 +1,15 @@
-//! The logged rate without its sensor's noise.
+//! The logged rate and specific force without their sensors' noise.
 //!
-//! Where the bearing hardly slips, friction turns every error of the logged rate into torque. Wiener's filter takes
-//! out what is noise by the rate's own spectrum:
+//! Where the bearing hardly slips, friction turns every error of the logged rate into torque; noise of the specific force makes
+//! an unbalance too small, the more the less the force changes (errors in variables). Wiener's filter takes out what is noise
+//! by the signal's own spectrum, and what hangs on the signal is as large as it is:
 //!
 //! ```text
-//! W(f) = max(0, 1 - N / P(f))        P the power of the logged rate, N that of its white noise
+//! W(f) = max(0, 1 - N / P(f))        P the power of the signal as logged, N that of its white noise
 //! ```
 //!
-//! White motion and white noise look alike in the rate; the outputs tell them apart. The filter stays when the
-//! nominal prediction from the filtered rate is closer to them in what is quick.
+//! White motion and white noise look alike in a signal; the outputs tell them apart. The filter stays when the
+//! nominal prediction from the filtered signal is closer to them in what is quick.
 
 use realfft::RealFftPlanner;
 
@@ -21,12 +22,18 @@ use crate::simulate::{Inputs, Physics, Prediction, predict};
 
 /// Rows of a segment in which the spectrum is taken.
 const SEGMENT: usize = 2048;
+/// Lines that pass as they are, and one in how many is as low as noise is.
+const SLOWEST: usize = 3;
+const LOWEST: usize = 20;
 /// A row whose filtered rate is off by more standard deviations keeps its own: a step, no noise.
 const STEP: f64 = 4.0;
 /// Rows around a step that keep theirs too.
 const AROUND: usize = 20;
 /// Share of an output's quick misfit that the filter may leave.
 const BETTER: f64 = 0.995;
+/// What a filter of the specific force must take away of the misfit over its mean square: were it force and no noise, it would
+/// leave more by four standard errors.
+const SURE: f64 = 16.0;
 /// Rows between those of which third differences are taken: what is slower than 10 Hz, where parameters are off, is hardly
 /// in them.
 const APART: usize = 8;
@@ -36,7 +43,8 @@ impl Record {
     pub fn quieten(&mut self, physics: &Physics) {
         let as_logged = self.predicted(physics, &self.inputs);
         let hushed = self.hush_inputs(physics, as_logged);
-        let nominal = self.filter_rate(physics, hushed);
+        let filtered = self.filter_rate(physics, hushed);
+        let nominal = self.filter_force(physics, filtered);
         if let Some(hushed) = self.hushed(&nominal) {
             *self = hushed;
         }
@@ -44,7 +52,8 @@ impl Record {
 
     /// Filters the rate where that brings the prediction closer, and tells what is predicted then.
     fn filter_rate(&mut self, physics: &Physics, as_logged: Prediction) -> Prediction {
-        let Some((rate_radps, pass)) = filtered(&self.inputs.rate_radps) else { return as_logged };
+        let rate = &self.inputs.rate_radps;
+        let Some((rate_radps, pass)) = filtered(rate, rough(rate, &vec![true; rate.len()])) else { return as_logged };
         let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
         inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
         let quiet = self.predicted(physics, &inputs);
@@ -56,6 +65,22 @@ impl Record {
             return quiet;
         }
         as_logged
+    }
+
+    /// Filters the specific force where that brings the prediction closer, and tells what is predicted then.
+    fn filter_force(&mut self, physics: &Physics, as_is: Prediction) -> Prediction {
+        let quiet = |axis: &Vec<f64>| filtered(axis, least_noise(axis)).map_or_else(|| axis.clone(), |own| own.0);
+        let accel_mps2 = self.inputs.accel_mps2.each_ref().map(quiet);
+        let mut inputs = Inputs { accel_mps2, ..self.inputs.clone() };
+        inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
+        let quiet = self.predicted(physics, &inputs);
+        let (before, after) = (self.misfit(&as_is), self.misfit(&quiet));
+        let nearer: f64 = before.iter().zip(&after).map(|(before, after)| 1.0 - after / before).sum();
+        if nearer * self.rows() as f64 > SURE {
+            self.inputs = inputs;
+            return quiet;
+        }
+        as_is
     }
 
     /// What a platform shows that begins as the first rows do.
@@ -100,19 +125,32 @@ impl RateNoise {
     }
 }
 
-/// The rate through Wiener's filter, steps kept, and the filter; none when there is nothing to filter.
-fn filtered(rate_radps: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-    let rows = rate_radps.len();
-    let noise = rough(rate_radps, &vec![true; rows]);
+/// White noise of a signal whose motion may be as quick: what it has where its spectrum is lowest.
+fn least_noise(values: &[f64]) -> f64 {
+    if values.len() < SEGMENT {
+        return 0.0;
+    }
+    let mut lines = spectrum(values);
+    lines.sort_by(f64::total_cmp);
+    lines[lines.len() / LOWEST].sqrt()
+}
+
+/// A signal with so much white noise through Wiener's filter, steps kept, and the filter; none when there is nothing to filter.
+fn filtered(values: &[f64], noise: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+    let rows = values.len();
     if rows < 2 * SEGMENT || noise < 1e-9 {
         return None;
     }
-    let pass = pass(rate_radps, noise);
+    let pass: Vec<f64> = spectrum(values)
+        .iter()
+        .enumerate()
+        .map(|(line, power)| if line < SLOWEST { 1.0 } else { (1.0 - noise * noise / power).max(0.0) })
+        .collect();
     // mirrored at both ends
     let edge = SEGMENT / 2;
-    let mut padded: Vec<f64> = (1..=edge).rev().map(|k| 2.0 * rate_radps[0] - rate_radps[k]).collect();
-    padded.extend_from_slice(rate_radps);
-    padded.extend((1..=edge).map(|k| 2.0 * rate_radps[rows - 1] - rate_radps[rows - 1 - k]));
+    let mut padded: Vec<f64> = (1..=edge).rev().map(|k| 2.0 * values[0] - values[k]).collect();
+    padded.extend_from_slice(values);
+    padded.extend((1..=edge).map(|k| 2.0 * values[rows - 1] - values[rows - 1 - k]));
     let slope = (padded[padded.len() - 1] - padded[0]) / padded.len() as f64;
     let line: Vec<f64> = (0..padded.len()).map(|k| padded[0] + slope * k as f64).collect();
     padded.iter_mut().zip(&line).for_each(|(value, line)| *value -= line);
@@ -128,21 +166,21 @@ fn filtered(rate_radps: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let mut smooth = back.make_output_vec();
     back.process(&mut lines, &mut smooth).ok()?;
     let smooth: Vec<f64> = (0..rows).map(|k| smooth[k + edge] + line[k + edge]).collect();
-    let step = |k: usize| (smooth[k] - rate_radps[k]).abs() > STEP * noise;
+    let step = |k: usize| (smooth[k] - values[k]).abs() > STEP * noise;
     let mut kept = vec![false; rows];
     for k in (0..rows).filter(|&k| step(k)) {
         kept[k.saturating_sub(AROUND)..(k + AROUND).min(rows)].fill(true);
     }
-    Some(((0..rows).map(|k| if kept[k] { rate_radps[k] } else { smooth[k] }).collect(), pass))
+    Some(((0..rows).map(|k| if kept[k] { values[k] } else { smooth[k] }).collect(), pass))
 }
 
-/// W from zero to half the sampling rate.
-fn pass(values: &[f64], noise: f64) -> Vec<f64> {
+/// Power of a signal from zero to half the sampling rate, white noise of 1 having 1: the mean over segments and a few lines.
+fn spectrum(values: &[f64]) -> Vec<f64> {
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(SEGMENT);
     let mut lines = transform.make_output_vec();
     let window = hann(SEGMENT);
     let power: f64 = window.iter().map(|value| value * value).sum();
-    let mut spectrum = vec![0.0; lines.len()];
+    let mut sums = vec![0.0; lines.len()];
     let mut segments = 0.0;
     for start in (0..=values.len() - SEGMENT).step_by(SEGMENT / 2) {
         let segment = &values[start..start + SEGMENT];
@@ -150,21 +188,16 @@ fn pass(values: &[f64], noise: f64) -> Vec<f64> {
         let mut tapered: Vec<f64> =
             segment.iter().zip(&window).map(|(value, window)| (value - mean) * window).collect();
         if transform.process(&mut tapered, &mut lines).is_ok() {
-            spectrum.iter_mut().zip(&lines).for_each(|(sum, line)| *sum += line.norm_sqr() / power);
+            sums.iter_mut().zip(&lines).for_each(|(sum, line)| *sum += line.norm_sqr() / power);
             segments += 1.0;
         }
     }
-    let last = spectrum.len() - 1;
-    (0..=last)
-        .map(|line| {
-            if line < 3 {
-                return 1.0;
-            }
-            let around = &spectrum[line.saturating_sub(2)..=(line + 2).min(last)];
-            let mean = around.iter().sum::<f64>() / around.len() as f64 / segments;
-            (1.0 - noise * noise / mean).max(0.0)
-        })
-        .collect()
+    let last = sums.len() - 1;
+    let around = |line: usize| {
+        let around = &sums[line.saturating_sub(2)..=(line + 2).min(last)];
+        around.iter().sum::<f64>() / around.len() as f64 / segments
+    };
+    (0..=last).map(around).collect()
 }
 
 /// A value between two lines.

@@ -11,7 +11,7 @@ use crate::axis::search::Candidate;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(in crate::axis) const BEYOND: f64 = 1.15;
 /// Beside effects that take most of what is named it is none up to so many tolerances, with less than this share of their
-/// power: what their formulation leaves shifts parameters.
+/// power: what their formulation leaves shifts parameters, and looks like effects of reversals.
 const BESIDE: f64 = 3.0;
 const CRUMB: f64 = 0.06;
 
@@ -43,11 +43,30 @@ pub(super) fn beyond(
 /// amplitude of a column.
 fn named_power(balance: &Balance, members: &[usize], of: &impl Fn(&usize) -> f64) -> f64 {
     let candidates = members.iter().map(|&member| &balance.problem.candidates[member]);
-    let power = |candidate: &Candidate| {
-        let sizes: Vec<f64> = candidate.columns.iter().map(of).collect();
-        balance.problem.grams.powers(&candidate.columns, &sizes)[1]
+    candidates
+        .filter(|candidate| !NOMINAL.contains(&candidate.shape))
+        .map(|candidate| power(balance, candidate, of))
+        .sum()
+}
+
+fn power(balance: &Balance, candidate: &Candidate, of: &impl Fn(&usize) -> f64) -> f64 {
+    let sizes: Vec<f64> = candidate.columns.iter().map(of).collect();
+    balance.problem.grams.powers(&candidate.columns, &sizes)[1]
+}
+
+/// What the formulation of a set's effects may leave: members that are never quite as they are formulated, with a small share of
+/// the power of all, and of the parameters beyond what is known of them. They are fitted, and not named.
+pub(super) fn crumbs(balance: &Balance, members: &[usize], beyond: &[usize]) -> Vec<usize> {
+    let (columns, amplitudes) = balance.fit(members);
+    let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
+    let shifts = balance.shifts(members, &columns, &amplitudes);
+    let shifted = beyond.iter().map(|&index| shifts[index].powi(2) * balance.problem.grams.power(index));
+    let least = CRUMB * (named_power(balance, members, &of) + shifted.sum::<f64>());
+    let is_crumb = |&member: &usize| {
+        let candidate = &balance.problem.candidates[member];
+        candidate.shape.is_rough() && power(balance, candidate, &of) < least
     };
-    candidates.filter(|candidate| !NOMINAL.contains(&candidate.shape)).map(power).sum()
+    members.iter().copied().filter(is_crumb).collect()
 }
 
 /// By how much a motor whose constant goes up and down needs more, whatever for:
@@ -65,15 +84,14 @@ fn of_the_motor(balance: &Balance, members: &[usize], of: &impl Fn(&usize) -> f6
 pub(super) fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> Vec<String> {
     let (columns, amplitudes) = balance.fit(members);
     let shifts = balance.shifts(members, &columns, &amplitudes);
-    let shapes = members.iter().map(|&m| &balance.problem.candidates[m].shape);
-    let mut names: Vec<String> = shapes
+    let beyond = beyond(balance, model, members, shifts, balance.of_noise());
+    let crumbs = crumbs(balance, members, &beyond);
+    let told = members.iter().filter(|member| !crumbs.contains(member));
+    let mut names: Vec<String> = told
+        .map(|&member| &balance.problem.candidates[member].shape)
         .filter(|shape| !NOMINAL.contains(shape))
         .map(|shape| label(shape, &balance.motion))
-        .chain(
-            beyond(balance, model, members, shifts, balance.of_noise())
-                .into_iter()
-                .map(|index| NOMINAL[index].effect().to_owned()),
-        )
+        .chain(beyond.into_iter().map(|index| NOMINAL[index].effect().to_owned()))
         .collect();
     names.sort();
     names.dedup();

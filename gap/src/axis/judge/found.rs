@@ -2,7 +2,7 @@
 
 use gimbal_model_file::AxisModel;
 
-use super::beyond::{beyond, label};
+use super::beyond::{beyond, crumbs, label};
 use super::{Found, Parameter, Ranked, deviation, parameters};
 use crate::axis::balance::Balance;
 use crate::axis::library::{NOMINAL, Shape};
@@ -73,17 +73,19 @@ fn squares(balance: &Balance, own: &[(&[f64], f64)]) -> f64 {
 }
 
 /// The effects of a set that closes so much of the gap, the one that takes most first; what frees a nominal parameter is
-/// told as the parameter.
+/// told as the parameter. And what is fitted beside them, but not named.
 pub(super) fn found(
     balance: &Balance,
     fitted: &Fitted,
     model: &AxisModel,
     ranking: &[Ranked],
     reduction_percent: f64,
-) -> Vec<Found> {
+) -> (Vec<Found>, Vec<Found>) {
     let of_noise = balance.of_noise();
     let errors = fitted.errors();
     let unsure = std::array::from_fn(|index| errors[index] + of_noise[index]);
+    let beyond = beyond(balance, model, fitted.members, fitted.shifts, unsure);
+    let crumbs = crumbs(balance, fitted.members, &beyond);
     let added = fitted.members.iter().map(|&member| (member, &balance.problem.candidates[member].shape));
     let added: Vec<(Shape, String, f64, Vec<Parameter>)> = added
         .filter(|(_, shape)| !NOMINAL.contains(shape))
@@ -95,7 +97,7 @@ pub(super) fn found(
             (shape.clone(), label(shape, &balance.motion), fitted.power(balance, member), told)
         })
         .collect();
-    let shifted = beyond(balance, model, fitted.members, fitted.shifts, unsure).into_iter().map(|index| {
+    let shifted = beyond.into_iter().map(|index| {
         let shape = NOMINAL[index].clone();
         let samples: Vec<Vec<f64>> = fitted.shifted.iter().map(|shifts| vec![shifts[index]]).collect();
         let told = parameters(&shape, &[fitted.shifts[index]], &samples, model, &balance.motion);
@@ -117,8 +119,10 @@ pub(super) fn found(
         removes: (own / power * gone).clamp(0.0, 1.0),
         shows_in: "effort",
     };
+    let is_crumb = |shape: &Shape| crumbs.iter().any(|&crumb| balance.problem.candidates[crumb].shape == *shape);
+    let (crumbs, all): (Vec<_>, Vec<_>) = all.into_iter().partition(|(shape, ..)| is_crumb(shape));
     // what no likely set holds is not told
     let mut found: Vec<Found> = all.into_iter().map(one).filter(|found| found.probability > 0.0).collect();
     found.sort_by(|a, b| b.removes.total_cmp(&a.removes));
-    found
+    (found, crumbs.into_iter().map(one).collect())
 }

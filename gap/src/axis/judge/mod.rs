@@ -78,6 +78,8 @@ pub struct Ranked {
 pub(super) struct Judged {
     pub(super) verdict: Verdict,
     pub(super) found: Vec<Found>,
+    /// Fitted, and too small beside what is found to be named.
+    pub(super) crumbs: Vec<Found>,
     pub(super) ranking: Vec<Ranked>,
     pub(super) alternatives: Vec<Ranked>,
     pub(super) unknown_probability: f64,
@@ -151,7 +153,7 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     let shrunk = shrunk("effort".to_owned(), &model.effort_unit, &before, &best.held_out, counts, floor);
     let (ranking, unknown_probability) = rank(balance, best, &fitted.times, &shrunk, model);
     let ranking = if balance.dead_zone_is_friction { or_dead_zone(ranking) } else { ranking };
-    let found = found(balance, &fitted, model, &ranking, shrunk.reduction_percent);
+    let (found, crumbs) = found(balance, &fitted, model, &ranking, shrunk.reduction_percent);
     let alternatives = alternatives(&ranking, &names(balance, &best.members, model), &found);
     let gap = balance.has_gap();
     let rest = Rest::of(&shrunk);
@@ -177,7 +179,8 @@ pub(super) fn judge(balance: &Balance, best: &Set, model: &AxisModel) -> Judged 
     };
     let alternatives = if verdict == Verdict::NoGap { Vec::new() } else { alternatives };
     let nothing_named = found.is_empty();
-    let mut judged = Judged { verdict, found, ranking, alternatives, unknown_probability, shrunk, drawn: fitted.drawn };
+    let mut judged =
+        Judged { verdict, found, crumbs, ranking, alternatives, unknown_probability, shrunk, drawn: fitted.drawn };
     if verdict == Verdict::Unexplained && nothing_named {
         judged.doubted(doubt(rest, 0).max(unknown_probability));
     }

@@ -30,19 +30,26 @@ impl Shape {
         )
     }
 
-    /// Share of the effort's power that it must take. What acts at reversals, or through the motion's higher derivatives, is
-    /// never quite as it is formulated here; what hangs on the place or on a channel is known by that.
+    /// Whether it acts at reversals, or through the motion's higher derivatives: it is never quite as it is formulated here.
+    pub(in crate::axis) fn is_rough(&self) -> bool {
+        matches!(
+            self,
+            Self::Stribeck { .. }
+                | Self::Presliding { .. }
+                | Self::LoadDependence
+                | Self::InertialLoad
+                | Self::Hysteresis { .. }
+                | Self::Lag
+                | Self::Flexible
+                | Self::Mode { .. }
+                | Self::Backlash(_)
+        )
+    }
+
+    /// Share of the effort's power that it must take; what hangs on the place or on a channel is known by that.
     pub(in crate::axis) fn least_of_effort(&self) -> f64 {
         match self {
-            Self::Stribeck { .. }
-            | Self::Presliding { .. }
-            | Self::LoadDependence
-            | Self::InertialLoad
-            | Self::Hysteresis { .. }
-            | Self::Lag
-            | Self::Flexible
-            | Self::Mode { .. }
-            | Self::Backlash(_) => 1e-4,
+            _ if self.is_rough() => 1e-4,
             Self::Spring
             | Self::FrictionTaper
             | Self::PositionFriction { .. }
