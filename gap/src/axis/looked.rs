@@ -5,6 +5,7 @@ use gimbal_model_file::AxisModel;
 use super::balance::Balance;
 use super::columns::{Checked, ColumnFault};
 use super::judge::{Found, Judged, judge};
+use super::library::rms;
 use super::motion::Motion;
 use super::ready::ready;
 use super::search::Set;
@@ -16,8 +17,8 @@ const NARROWER: f64 = 0.6;
 const NARROWINGS: usize = 4;
 /// Rows that a band must leave.
 const LEAST_ROWS: usize = 100;
-/// Bands in which something must be the same where the widest one shows nothing.
-const BENEATH: usize = 3;
+/// Share of the effort from which on noise hides what a narrower band shows.
+const HIDES: f64 = 0.02;
 /// Which of its columns is wrong where position and rate differ by a factor.
 const SCALES: [&str; 3] = ["position_scale", "velocity_scale", "time_scale"];
 
@@ -84,17 +85,31 @@ impl Looked {
         self.closer(log).find(better)
     }
 
-    /// Where nothing stands out of the noise of the wide band: the narrower one in which something does, if a still narrower one
-    /// says the same of it.
+    /// Where nothing stands out of a wide band's noise, which is a notable part of the effort: the first narrower one in which
+    /// something does, if the next says the same of it.
     fn beneath(&self, log: &AxisLog) -> Option<Self> {
-        if self.model.band_hz.is_some() {
+        let motion = &self.balance.motion;
+        if self.model.band_hz.is_some() || motion.floor < HIDES * rms(&motion.pick(&motion.effort)) {
             return None;
         }
-        let mut closer = self.closer(log).take(BENEATH);
-        let first = closer.next().filter(|first| first.judged.verdict == Verdict::Explained)?;
-        let named = |own: &Self| -> Vec<String> { own.judged.found.iter().map(|found| found.effect.clone()).collect() };
-        let agrees = |other: Self| other.judged.verdict == Verdict::Explained && named(&other) == named(&first);
-        closer.all(agrees).then_some(first)
+        let mut last: Option<Self> = None;
+        for closer in self.closer(log) {
+            if let Some(first) = last.take_if(|first| first.names() == closer.names()) {
+                return Some(first);
+            }
+            last = Some(closer).filter(|closer| closer.judged.verdict == Verdict::Explained && !closer.is_rough());
+        }
+        None
+    }
+
+    /// Whether something of it is never quite as it is formulated.
+    fn is_rough(&self) -> bool {
+        self.best.members.iter().any(|&member| self.balance.problem.candidates[member].shape.is_rough())
+    }
+
+    /// Names of what is found.
+    fn names(&self) -> Vec<&str> {
+        self.judged.found.iter().map(|found| found.effect.as_str()).collect()
     }
 
     /// The same log in narrower bands, one after the other, as long as rows are left.

@@ -13,4 +13,5 @@ mod play;
 mod real;
 mod simulated;
 mod simulator;
+mod small;
 mod unseen;
