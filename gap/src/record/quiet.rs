@@ -31,9 +31,9 @@ const STEP: f64 = 4.0;
 const AROUND: usize = 20;
 /// Share of an output's quick misfit that the filter may leave.
 const BETTER: f64 = 0.995;
-/// What a filter of the specific force must take away of the misfit over its mean square: were it force and no noise, it would
-/// leave more by four standard errors.
-const SURE: f64 = 16.0;
+/// What a filter of the specific force must take away of the misfit over its mean square, so that it matters: were it force and no noise, it would
+/// leave more by fourteen standard errors.
+const SURE: f64 = 200.0;
 /// Rows between those of which third differences are taken: what is slower than 10 Hz, where parameters are off, is hardly
 /// in them.
 const APART: usize = 8;
