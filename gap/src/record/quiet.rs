@@ -31,12 +31,19 @@ const STEP: f64 = 4.0;
 const AROUND: usize = 20;
 /// Share of an output's quick misfit that the filter may leave.
 const BETTER: f64 = 0.995;
-/// What a filter of the specific force must take away of the misfit over its mean square, so that it matters: were it force and no noise, it would
-/// leave more by fourteen standard errors.
+/// What a filter of the specific force must take away of the misfit over its mean square, so that it matters: were it force and
+/// no noise, it would leave more by fourteen standard errors.
 const SURE: f64 = 200.0;
 /// Rows between those of which third differences are taken: what is slower than 10 Hz, where parameters are off, is hardly
 /// in them.
 const APART: usize = 8;
+
+/// Inputs in the place of others, what they predict, and each output's quick misfit over that of before.
+struct Instead {
+    inputs: Inputs,
+    prediction: Prediction,
+    ratios: Vec<f64>,
+}
 
 impl Record {
     /// Takes out what sensors add, where the outputs show it: noise of the rate, and hum.
@@ -53,34 +60,47 @@ impl Record {
     /// Filters the rate where that brings the prediction closer, and tells what is predicted then.
     fn filter_rate(&mut self, physics: &Physics, as_logged: Prediction) -> Prediction {
         let rate = &self.inputs.rate_radps;
-        let Some((rate_radps, pass)) = filtered(rate, rough(rate, &vec![true; rate.len()])) else { return as_logged };
-        let mut inputs = Inputs { rate_radps, ..self.inputs.clone() };
-        inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
-        let quiet = self.predicted(physics, &inputs);
-        let (before, after) = (self.misfit(&as_logged), self.misfit(&quiet));
-        let ratios: Vec<f64> = after.iter().zip(&before).map(|(after, before)| after / before).collect();
+        let noise = |_: &[f64]| rough(rate, &vec![true; rate.len()]);
+        let Some((rate_radps, pass)) = filtered(rate, noise) else { return as_logged };
+        let filtered = self.instead(physics, Inputs { rate_radps, ..self.inputs.clone() }, &as_logged);
+        let ratios = &filtered.ratios;
         if ratios.iter().all(|ratio| *ratio < 2.0 - BETTER) && ratios.iter().any(|ratio| *ratio < BETTER) {
-            self.inputs = inputs;
+            self.inputs = filtered.inputs;
             self.rate_noise.pass = pass;
-            return quiet;
+            return filtered.prediction;
         }
         as_logged
     }
 
     /// Filters the specific force where that brings the prediction closer, and tells what is predicted then.
     fn filter_force(&mut self, physics: &Physics, as_is: Prediction) -> Prediction {
-        let quiet = |axis: &Vec<f64>| filtered(axis, least_noise(axis)).map_or_else(|| axis.clone(), |own| own.0);
-        let accel_mps2 = self.inputs.accel_mps2.each_ref().map(quiet);
-        let mut inputs = Inputs { accel_mps2, ..self.inputs.clone() };
-        inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
-        let quiet = self.predicted(physics, &inputs);
-        let (before, after) = (self.misfit(&as_is), self.misfit(&quiet));
-        let nearer: f64 = before.iter().zip(&after).map(|(before, after)| 1.0 - after / before).sum();
+        let axes = self.inputs.accel_mps2.each_ref();
+        let quiet = axes.map(|axis| filtered(axis, lowest).map(|(quiet, _)| quiet));
+        if quiet.iter().all(Option::is_none) {
+            return as_is;
+        }
+        let mut inputs = self.inputs.clone();
+        for (axis, quiet) in inputs.accel_mps2.iter_mut().zip(quiet) {
+            if let Some(quiet) = quiet {
+                *axis = quiet;
+            }
+        }
+        let filtered = self.instead(physics, inputs, &as_is);
+        let nearer: f64 = filtered.ratios.iter().map(|ratio| 1.0 - ratio).sum();
         if nearer * self.rows() as f64 > SURE {
-            self.inputs = inputs;
-            return quiet;
+            self.inputs = filtered.inputs;
+            return filtered.prediction;
         }
         as_is
+    }
+
+    /// What other inputs make of the prediction.
+    fn instead(&self, physics: &Physics, mut inputs: Inputs, before: &Prediction) -> Instead {
+        inputs.complete(&physics.config.bearing, self.inputs.turned_rad[0]);
+        let prediction = self.predicted(physics, &inputs);
+        let (before, after) = (self.misfit(before), self.misfit(&prediction));
+        let ratios = after.iter().zip(&before).map(|(after, before)| after / before).collect();
+        Instead { inputs, prediction, ratios }
     }
 
     /// What a platform shows that begins as the first rows do.
@@ -125,23 +145,26 @@ impl RateNoise {
     }
 }
 
-/// White noise of a signal whose motion may be as quick: what it has where its spectrum is lowest.
-fn least_noise(values: &[f64]) -> f64 {
-    if values.len() < SEGMENT {
-        return 0.0;
-    }
-    let mut lines = spectrum(values);
+/// White noise of a signal whose motion may be as quick, by its spectrum: what it has where that is lowest.
+fn lowest(spectrum: &[f64]) -> f64 {
+    let mut lines = spectrum.to_vec();
     lines.sort_by(f64::total_cmp);
     lines[lines.len() / LOWEST].sqrt()
 }
 
-/// A signal with so much white noise through Wiener's filter, steps kept, and the filter; none when there is nothing to filter.
-fn filtered(values: &[f64], noise: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+/// A signal through Wiener's filter for the white noise that its spectrum tells, steps kept, and the filter; none when there is
+/// nothing to filter.
+fn filtered(values: &[f64], noise: impl Fn(&[f64]) -> f64) -> Option<(Vec<f64>, Vec<f64>)> {
     let rows = values.len();
-    if rows < 2 * SEGMENT || noise < 1e-9 {
+    if rows < 2 * SEGMENT {
         return None;
     }
-    let pass: Vec<f64> = spectrum(values)
+    let spectrum = spectrum(values);
+    let noise = noise(&spectrum);
+    if noise < 1e-9 {
+        return None;
+    }
+    let pass: Vec<f64> = spectrum
         .iter()
         .enumerate()
         .map(|(line, power)| if line < SLOWEST { 1.0 } else { (1.0 - noise * noise / power).max(0.0) })

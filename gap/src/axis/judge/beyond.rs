@@ -15,58 +15,71 @@ pub(in crate::axis) const BEYOND: f64 = 1.15;
 const BESIDE: f64 = 3.0;
 const CRUMB: f64 = 0.06;
 
+/// A set with what its columns and the nominal parameters are fitted to.
+pub(super) struct Sizes<'a> {
+    pub(super) members: &'a [usize],
+    pub(super) columns: Vec<usize>,
+    pub(super) amplitudes: Vec<f64>,
+    /// Shifts of the nominal parameters.
+    pub(super) shifts: [f64; 3],
+}
+
+impl<'a> Sizes<'a> {
+    pub(super) fn new(balance: &Balance, members: &'a [usize]) -> Self {
+        let (columns, amplitudes) = balance.fit(members);
+        let shifts = balance.shifts(members, &columns, &amplitudes);
+        Self { members, columns, amplitudes, shifts }
+    }
+
+    /// Amplitude of a column.
+    fn of(&self, column: usize) -> f64 {
+        self.columns.iter().position(|own| *own == column).map_or(0.0, |place| self.amplitudes[place])
+    }
+
+    /// What a candidate puts into the balance, squared and summed.
+    fn power(&self, balance: &Balance, candidate: &Candidate) -> f64 {
+        let sizes: Vec<f64> = candidate.columns.iter().map(|&column| self.of(column)).collect();
+        balance.problem.grams.powers(&candidate.columns, &sizes)[1]
+    }
+
+    /// The same of the shift of a nominal parameter.
+    fn shift_power(&self, balance: &Balance, index: usize) -> f64 {
+        self.shifts[index].powi(2) * balance.problem.grams.power(index)
+    }
+
+    /// The same of all effects that are no parameters, each by itself.
+    fn named_power(&self, balance: &Balance) -> f64 {
+        let candidates = self.members.iter().map(|&member| &balance.problem.candidates[member]);
+        let named = candidates.filter(|candidate| !NOMINAL.contains(&candidate.shape));
+        named.map(|candidate| self.power(balance, candidate)).sum()
+    }
+}
+
 /// Nominal parameters beyond what is known of them, by their places.
-pub(super) fn beyond(
-    balance: &Balance,
-    model: &AxisModel,
-    members: &[usize],
-    shifts: [f64; 3],
-    errors: [f64; 3],
-) -> Vec<usize> {
+pub(super) fn beyond(balance: &Balance, model: &AxisModel, set: &Sizes, errors: [f64; 3]) -> Vec<usize> {
     // and worth the price of an effect
-    let grams = &balance.problem.grams;
-    let worth = |index: usize| shifts[index].powi(2) * grams.power(index) > balance.problem.price();
-    let (columns, amplitudes) = balance.fit(members);
-    let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
-    let more = of_the_motor(balance, members, &of);
-    let named = named_power(balance, members, &of);
+    let worth = |index: usize| set.shift_power(balance, index) > balance.problem.price();
+    let more = of_the_motor(balance, set);
+    let named = set.named_power(balance);
     let tolerated = tolerated_shifts(model);
     let outside = |index: usize| {
         let unsure = errors[index] + more * nominal(model)[index];
-        let crumb = shifts[index].powi(2) * grams.power(index) < CRUMB * named;
-        shifts[index].abs() - unsure > if crumb { BESIDE } else { BEYOND } * tolerated[index]
+        let crumb = set.shift_power(balance, index) < CRUMB * named;
+        set.shifts[index].abs() - unsure > if crumb { BESIDE } else { BEYOND } * tolerated[index]
     };
     (0..3).filter(|&index| worth(index) && outside(index)).collect()
 }
 
-/// What the effects of a set that are no parameters put into the balance, each by itself, squared and summed; `of` is the
-/// amplitude of a column.
-fn named_power(balance: &Balance, members: &[usize], of: &impl Fn(&usize) -> f64) -> f64 {
-    let candidates = members.iter().map(|&member| &balance.problem.candidates[member]);
-    candidates
-        .filter(|candidate| !NOMINAL.contains(&candidate.shape))
-        .map(|candidate| power(balance, candidate, of))
-        .sum()
-}
-
-fn power(balance: &Balance, candidate: &Candidate, of: &impl Fn(&usize) -> f64) -> f64 {
-    let sizes: Vec<f64> = candidate.columns.iter().map(of).collect();
-    balance.problem.grams.powers(&candidate.columns, &sizes)[1]
-}
-
 /// What the formulation of a set's effects may leave: members that are never quite as they are formulated, with a small share of
 /// the power of all, and of the parameters beyond what is known of them. They are fitted, and not named.
-pub(super) fn crumbs(balance: &Balance, members: &[usize], beyond: &[usize]) -> Vec<usize> {
-    let (columns, amplitudes) = balance.fit(members);
-    let of = |column: &usize| columns.iter().position(|own| own == column).map_or(0.0, |place| amplitudes[place]);
-    let shifts = balance.shifts(members, &columns, &amplitudes);
-    let shifted = beyond.iter().map(|&index| shifts[index].powi(2) * balance.problem.grams.power(index));
-    let least = CRUMB * (named_power(balance, members, &of) + shifted.sum::<f64>());
+pub(super) fn crumbs(balance: &Balance, set: &Sizes, beyond: &[usize]) -> Vec<usize> {
+    let shifted: f64 = beyond.iter().map(|&index| set.shift_power(balance, index)).sum();
+    let least = CRUMB * (set.named_power(balance) + shifted);
     let is_crumb = |&member: &usize| {
         let candidate = &balance.problem.candidates[member];
-        candidate.shape.is_rough() && power(balance, candidate, &of) < least
+        candidate.shape.is_rough() && set.power(balance, candidate) < least
     };
-    members.iter().copied().filter(is_crumb).collect()
+    set.members.iter().copied().filter(is_crumb).collect()
 }
 
 /// By how much a motor whose constant goes up and down needs more, whatever for:
@@ -74,18 +87,17 @@ pub(super) fn crumbs(balance: &Balance, members: &[usize], beyond: &[usize]) -> 
 /// ```text
 /// mean of 1 / (1 + r cos x) = 1 + r^2 / 2 + ...
 /// ```
-fn of_the_motor(balance: &Balance, members: &[usize], of: &impl Fn(&usize) -> f64) -> f64 {
-    let candidates = members.iter().map(|&member| &balance.problem.candidates[member]);
+fn of_the_motor(balance: &Balance, set: &Sizes) -> f64 {
+    let candidates = set.members.iter().map(|&member| &balance.problem.candidates[member]);
     let ripples = candidates.filter(|candidate| matches!(candidate.shape, Shape::MotorRipple { .. }));
-    ripples.flat_map(|candidate| &candidate.columns).map(|column| 0.5 * of(column).powi(2)).sum()
+    ripples.flat_map(|candidate| &candidate.columns).map(|&column| 0.5 * set.of(column).powi(2)).sum()
 }
 
 /// Names of a set's effects, each once.
 pub(super) fn names(balance: &Balance, members: &[usize], model: &AxisModel) -> Vec<String> {
-    let (columns, amplitudes) = balance.fit(members);
-    let shifts = balance.shifts(members, &columns, &amplitudes);
-    let beyond = beyond(balance, model, members, shifts, balance.of_noise());
-    let crumbs = crumbs(balance, members, &beyond);
+    let set = Sizes::new(balance, members);
+    let beyond = beyond(balance, model, &set, balance.of_noise());
+    let crumbs = crumbs(balance, &set, &beyond);
     let told = members.iter().filter(|member| !crumbs.contains(member));
     let mut names: Vec<String> = told
         .map(|&member| &balance.problem.candidates[member].shape)

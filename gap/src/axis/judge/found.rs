@@ -2,7 +2,7 @@
 
 use gimbal_model_file::AxisModel;
 
-use super::beyond::{beyond, crumbs, label};
+use super::beyond::{Sizes, beyond, crumbs, label};
 use super::{Found, Parameter, Ranked, deviation, parameters};
 use crate::axis::balance::Balance;
 use crate::axis::library::{NOMINAL, Shape};
@@ -14,29 +14,24 @@ const DRAWS: usize = 200;
 
 /// A set as it was fitted, on all of the log and on blocks drawn anew.
 pub(super) struct Fitted<'a> {
-    members: &'a [usize],
-    columns: Vec<usize>,
-    amplitudes: Vec<f64>,
+    set: Sizes<'a>,
     /// Amplitudes of each draw.
     pub(super) drawn: Vec<Vec<f64>>,
     /// How often each draw has each block.
     pub(super) times: Vec<Vec<f64>>,
-    /// Shifts of the nominal parameters, and those of each draw.
-    shifts: [f64; 3],
+    /// Shifts of the nominal parameters of each draw.
     shifted: Vec<Vec<f64>>,
 }
 
 impl<'a> Fitted<'a> {
     pub(super) fn new(balance: &Balance, best: &'a Set) -> Self {
         let grams = &balance.problem.grams;
-        let members = &best.members;
-        let (columns, amplitudes) = balance.fit(members);
+        let set = Sizes::new(balance, &best.members);
         let mut draws = Draws::new();
         let times: Vec<Vec<f64>> = (0..DRAWS).map(|_| draws.draw(&grams.counts)).collect();
-        let drawn: Vec<Vec<f64>> = times.iter().filter_map(|draw| grams.fit_drawn(&columns, draw)).collect();
-        let shifts = balance.shifts(members, &columns, &amplitudes);
-        let shifted = drawn.iter().map(|own| balance.shifts(members, &columns, own).to_vec()).collect();
-        Self { members, columns, amplitudes, drawn, times, shifts, shifted }
+        let drawn: Vec<Vec<f64>> = times.iter().filter_map(|draw| grams.fit_drawn(&set.columns, draw)).collect();
+        let shifted = drawn.iter().map(|own| balance.shifts(set.members, &set.columns, own).to_vec()).collect();
+        Self { set, drawn, times, shifted }
     }
 
     /// Standard errors of the shifts.
@@ -47,7 +42,7 @@ impl<'a> Fitted<'a> {
     /// Places of a member's columns among those that are fitted.
     fn places(&self, balance: &Balance, member: usize) -> Vec<usize> {
         let own = balance.problem.candidates[member].columns.iter();
-        own.filter_map(|column| self.columns.iter().position(|fitted| fitted == column)).collect()
+        own.filter_map(|column| self.set.columns.iter().position(|fitted| fitted == column)).collect()
     }
 
     /// What a member puts into the balance, squared and summed.
@@ -55,14 +50,14 @@ impl<'a> Fitted<'a> {
         let own: Vec<(&[f64], f64)> = self
             .places(balance, member)
             .into_iter()
-            .map(|place| (&balance.columns[self.columns[place]][..], self.amplitudes[place]))
+            .map(|place| (&balance.columns[self.set.columns[place]][..], self.set.amplitudes[place]))
             .collect();
         squares(balance, &own)
     }
 
     /// The same of the shift of a nominal parameter.
     fn shift_power(&self, balance: &Balance, index: usize) -> f64 {
-        squares(balance, &[(&balance.columns[index][..], self.shifts[index])])
+        squares(balance, &[(&balance.columns[index][..], self.set.shifts[index])])
     }
 }
 
@@ -84,23 +79,23 @@ pub(super) fn found(
     let of_noise = balance.of_noise();
     let errors = fitted.errors();
     let unsure = std::array::from_fn(|index| errors[index] + of_noise[index]);
-    let beyond = beyond(balance, model, fitted.members, fitted.shifts, unsure);
-    let crumbs = crumbs(balance, fitted.members, &beyond);
-    let added = fitted.members.iter().map(|&member| (member, &balance.problem.candidates[member].shape));
+    let beyond = beyond(balance, model, &fitted.set, unsure);
+    let crumbs = crumbs(balance, &fitted.set, &beyond);
+    let added = fitted.set.members.iter().map(|&member| (member, &balance.problem.candidates[member].shape));
     let added: Vec<(Shape, String, f64, Vec<Parameter>)> = added
         .filter(|(_, shape)| !NOMINAL.contains(shape))
         .map(|(member, shape)| {
             let places = fitted.places(balance, member);
             let of = |amplitudes: &[f64]| -> Vec<f64> { places.iter().map(|&place| amplitudes[place]).collect() };
             let samples: Vec<Vec<f64>> = fitted.drawn.iter().map(|own| of(own)).collect();
-            let told = parameters(shape, &of(&fitted.amplitudes), &samples, model, &balance.motion);
+            let told = parameters(shape, &of(&fitted.set.amplitudes), &samples, model, &balance.motion);
             (shape.clone(), label(shape, &balance.motion), fitted.power(balance, member), told)
         })
         .collect();
     let shifted = beyond.into_iter().map(|index| {
         let shape = NOMINAL[index].clone();
         let samples: Vec<Vec<f64>> = fitted.shifted.iter().map(|shifts| vec![shifts[index]]).collect();
-        let told = parameters(&shape, &[fitted.shifts[index]], &samples, model, &balance.motion);
+        let told = parameters(&shape, &[fitted.set.shifts[index]], &samples, model, &balance.motion);
         let (effect, power) = (shape.effect().to_owned(), fitted.shift_power(balance, index));
         (shape, effect, power, told)
     });
