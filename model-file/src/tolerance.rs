@@ -3,6 +3,9 @@
 use gimbal_servo::estimator;
 use serde::{Deserialize, Serialize};
 
+/// Of the bearings' torques: points measured by the paper lie so near to its curve (fig. 4).
+const BEARINGS: f64 = 0.15;
+
 /// Relative standard uncertainty of each nominal parameter, by the name of the effect that shifts it, and the bias that the
 /// logged rate may have.
 ///
@@ -16,7 +19,7 @@ pub struct Tolerance {
     pub default_relative: f64,
     /// Load friction: the scatter of the paper's own measurements.
     pub friction_level: f64,
-    /// Viscous friction.
+    /// Viscous friction: what they scatter by is the torque of both.
     pub viscous_friction: f64,
     /// Unbalance vector, relative to its nominal size.
     pub mass_unbalance: f64,
@@ -41,13 +44,13 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Everything known to `default_relative`, load friction to 15 %, a logged rate without bias.
+    /// Everything known to `default_relative`, the bearings' torques to 15 %, a logged rate without bias.
     #[must_use]
     pub fn with_default(default_relative: f64) -> Self {
         Self {
             default_relative,
-            friction_level: 0.15,
-            viscous_friction: default_relative,
+            friction_level: BEARINGS,
+            viscous_friction: BEARINGS,
             mass_unbalance: default_relative,
             loop_gain: default_relative,
             motor_lag: default_relative,
@@ -102,7 +105,7 @@ impl Tolerance {
 }
 
 impl Default for Tolerance {
-    /// 3 %, load friction 15 %.
+    /// 3 %, the bearings' torques 15 %.
     fn default() -> Self {
         Self::with_default(0.03)
     }

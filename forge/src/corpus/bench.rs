@@ -112,8 +112,7 @@ impl<'a> Bench<'a> {
             for value in &mut column {
                 *value /= step;
             }
-            let now = drift.of(name);
-            bench.nuisances.push(Nuisance { column, limits: (-tolerance - now, tolerance - now), name });
+            bench.nuisances.push(Nuisance { column, limits: drift::limits(name, drift.of(name)), name });
         }
         bench
     }

@@ -13,14 +13,19 @@ use crate::truth::Truth;
 
 /// Default tolerance of a nominal parameter, relative.
 pub(super) const DEFAULT: f64 = 0.03;
-/// Tolerance of the load friction, relative: the paper's own scatter.
+/// Tolerance of the bearings' torques, relative: the paper's own scatter.
 pub(super) const FRICTION_LEVEL: f64 = 0.15;
+/// How much of the motor's delay may be pure and how much is in a drive that has some: the paper calls all of it a delay,
+/// the nominal model has a lag.
+const PURE: f64 = 0.125;
+/// Its name.
+const PURE_DELAY: &str = "pure_delay";
 /// Largest turn of an accelerometer [rad].
 const MISALIGNMENT_RAD: f64 = 5e-4;
 
 /// Nominal parameters that drift, by the effect that a shift beyond tolerance is, where it is one; the unbalance has two
 /// components, and turns of the accelerometers come beside.
-pub(super) const NAMES: [&str; 23] = [
+pub(super) const NAMES: [&str; 24] = [
     "friction_level",
     "viscous_friction",
     "loop_gain",
@@ -44,6 +49,7 @@ pub(super) const NAMES: [&str; 23] = [
     "T7",
     "T8",
     "T9",
+    PURE_DELAY,
 ];
 
 /// Names of the turns of the accelerometers about x, y, z.
@@ -63,13 +69,21 @@ pub struct Drift {
     pub misalignment_rad: [f64; 3],
 }
 
-/// Largest drift to either side of one name.
+/// Largest drift to either side of one name, to the upper one alone of the delay's share.
 pub(super) fn tolerance(name: &str) -> f64 {
     match name {
-        "friction_level" => FRICTION_LEVEL,
+        "friction_level" | "viscous_friction" => FRICTION_LEVEL,
+        PURE_DELAY => PURE,
         name if turn(name).is_some() => MISALIGNMENT_RAD,
         _ => DEFAULT,
     }
+}
+
+/// From where to where one may still drift from where it is.
+pub(super) fn limits(name: &str, now: f64) -> (f64, f64) {
+    let tolerance = tolerance(name);
+    let lower = if name == PURE_DELAY { 0.0 } else { -tolerance };
+    (lower - now, tolerance - now)
 }
 
 impl Drift {
@@ -78,7 +92,11 @@ impl Drift {
         let relative = NAMES
             .iter()
             .map(|name| {
-                let value = 0.5 * tolerance(name) * draw.normal_within(2.0);
+                let value = if *name == PURE_DELAY {
+                    if draw.chance(0.5) { draw.uniform(0.0, PURE) } else { 0.0 }
+                } else {
+                    0.5 * tolerance(name) * draw.normal_within(2.0)
+                };
                 let own = shifted.iter().any(|effect| name.starts_with(effect));
                 ((*name).to_owned(), if own { 0.0 } else { value })
             })
@@ -116,6 +134,11 @@ pub(super) fn shift(world: &mut World, nominal: &Config, name: &str, change: f64
         "mass_unbalance_y" => truth.torque.unbalance_kg_m[1] += change * unbalance,
         "loop_gain" => truth.config.servo.gain_nm_per_rad_s += change * nominal.servo.gain_nm_per_rad_s,
         "motor_lag" => truth.config.servo.motor_lag_s += change * nominal.servo.motor_lag_s,
+        // of the same delay another part
+        PURE_DELAY => {
+            truth.drive.delay_s += change * nominal.servo.motor_lag_s;
+            truth.config.servo.motor_lag_s -= change * nominal.servo.motor_lag_s;
+        }
         "gyro_damping" => truth.config.gyro.damping_nm_s_per_rad += change * nominal.gyro.damping_nm_s_per_rad,
         "angular_momentum" => truth.config.gyro.angular_momentum_nm_s += change * nominal.gyro.angular_momentum_nm_s,
         "stop_angle" => truth.config.gyro.stop_angle_rad += change * nominal.gyro.stop_angle_rad,

@@ -37,6 +37,7 @@ pub(super) fn csv(columns: &[Column]) -> String {
 struct Tolerance {
     default_relative: f64,
     friction_level: f64,
+    viscous_friction: f64,
 }
 
 #[derive(Serialize)]
@@ -57,7 +58,11 @@ pub(super) fn model(preset: &str, config: &Config) -> String {
         gyro: &config.gyro,
         bearing: &config.bearing,
         unbalance: &config.unbalance,
-        tolerance: Tolerance { default_relative: DEFAULT, friction_level: FRICTION_LEVEL },
+        tolerance: Tolerance {
+            default_relative: DEFAULT,
+            friction_level: FRICTION_LEVEL,
+            viscous_friction: FRICTION_LEVEL,
+        },
     };
     // numbers and names alone: nothing in it can fail
     toml::to_string(&model).unwrap_or_default()

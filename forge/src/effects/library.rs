@@ -133,8 +133,11 @@ fn apply_servo(effect: &Effect, size: f64, scale: &Scale, world: &mut World) {
     let grown = 1.0 + effect.sign * size;
     match effect.name {
         "loop_gain" => truth.config.servo.gain_nm_per_rad_s *= grown,
-        "loop_delay" => truth.drive.delay_s = size,
-        "motor_lag" => truth.config.servo.motor_lag_s *= grown,
+        "loop_delay" => truth.drive.delay_s += size,
+        "motor_lag" => {
+            truth.config.servo.motor_lag_s *= grown;
+            truth.drive.delay_s *= grown;
+        }
         "torque_saturation" => truth.drive.limit_nm = Some(scale.torque_nm / (1.0 + size)),
         "dead_zone" => truth.drive.dead_zone_nm = size,
         "pickoff_quantisation" => {

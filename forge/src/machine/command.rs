@@ -31,7 +31,7 @@ impl Machine<'_> {
         let delay_s = self.truth.drive.delay_s;
         let step_s = self.track.period_s / self.steps_per_row as f64;
         if delay_s < step_s {
-            return command - delay_s * command_rate;
+            return self.lately(command, command_rate, offset_s, step_s);
         }
         // steps before the start of the present one, at least 0
         let back = (delay_s - offset_s) / step_s;
@@ -44,5 +44,20 @@ impl Machine<'_> {
         let [p, q, r, s] = [place, place - 1.0, place - 2.0, place - 3.0];
         value(0) * q * r * s / -6.0 + value(1) * p * r * s / 2.0 - value(2) * p * q * s / 2.0
             + value(3) * p * q * r / 6.0
+    }
+    /// The command `delay` ago, less than a step: along the cubic with its value and rate now, and its values at the last
+    /// two starts of a step.
+    fn lately(&self, command: f64, command_rate: f64, offset_s: f64, step_s: f64) -> f64 {
+        let newest = self.history.len() - 1;
+        let first = usize::from(offset_s < 1e-3 * step_s);
+        let [near_s, far_s] = [first, first + 1].map(|back| offset_s + back as f64 * step_s);
+        let bent = |back: usize, age_s: f64| {
+            (self.history[newest.saturating_sub(back)] - command + age_s * command_rate) / (age_s * age_s)
+        };
+        let (near, far) = (bent(first, near_s), bent(first + 1, far_s));
+        let cubic = (near - far) / (far_s - near_s);
+        let square = near + cubic * near_s;
+        let age_s = self.truth.drive.delay_s;
+        command + age_s * (age_s * (square - age_s * cubic) - command_rate)
     }
 }

@@ -15,6 +15,8 @@ const FAR_BEYOND: f64 = 10.0;
 const BLURRED: f64 = 15.0;
 /// Effects that take energy, or that there are more of at low rate: less than none of them there is not.
 const NEVER_NEGATIVE: [&str; 2] = ["cable_hysteresis", "stribeck"];
+/// Share of the gimbal's inertia from which on an appendage is none.
+const MOST_OF_IT: f64 = 0.5;
 /// Share of its least realistic value below which a size hits the end of its range.
 const FAR_BELOW: f64 = 0.03;
 /// A nominal parameter is an effect from this many tolerances on.
@@ -68,6 +70,9 @@ pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
     if NEVER_NEGATIVE.contains(&effect.name()) && values[0] < 0.0 {
         return RULED_OUT;
     }
+    if effect.name() == "flexible_mode" && values[0] - errors[0] > MOST_OF_IT {
+        return RULED_OUT;
+    }
     let shapes = effect.parameters().iter().zip(values.iter().zip(errors)).skip(effect.sizes());
     let outside = |(parameter, (value, error)): (&Parameter, (&f64, &f64)), times: f64| {
         let factor = times * (2.0 * error / value.abs().max(1e-30)).min(2.0).exp();
@@ -104,9 +109,9 @@ mod tests {
 
     #[test]
     fn closed_form_a_size_beyond_all_realistic_ones_is_none_unless_it_is_known() {
-        for (error, costs) in [(1.1, BOUND_HIT), (0.1, 0.0)] {
-            let cost = at_a_bound("flexible_mode", &[0.92, 46.0, 0.1], &[error, 2.0, 0.05]);
-            assert_eq!(cost.to_bits(), costs.to_bits(), "+- {error}");
+        for (share, error, costs) in [(0.92, 1.1, BOUND_HIT), (0.4, 0.1, 0.0), (0.92, 0.1, RULED_OUT)] {
+            let cost = at_a_bound("flexible_mode", &[share, 46.0, 0.1], &[error, 2.0, 0.05]);
+            assert_eq!(cost.to_bits(), costs.to_bits(), "{share} +- {error}");
         }
     }
 

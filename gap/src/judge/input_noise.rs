@@ -1,7 +1,7 @@
 //! What noise of the logged inputs is to the gimbal, away from where the bearing turns around [N m]:
 //!
 //! ```text
-//! s^2 = |u|^2 n^2 + mean of sum over coloured ones (m_a dT/da)^2 + (m_w dT/dw)^2
+//! s^2 = |u|^2 n^2 + mean of sum over axes (n dT_load/da)^2 + over coloured ones (m_a dT/da)^2 + (m_w dT/dw)^2
 //! dT/dx = -u_y + dT_load/dx sgn w      dT/dy = u_x + dT_load/dy sgn w      dT/dz = dT_load/dz sgn w      dT/dw = T_visc'
 //! ```
 //!
@@ -9,18 +9,9 @@
 //! noise of an axis or of the rate that is not white.
 
 use crate::fit::{Fit, Problem};
-use crate::record::{COLOURED, colour, rough};
+use crate::record::{ForceNoise, slow};
 use crate::simulate::{Viscous, load_nm};
 
-/// Parts of the log, in one of which no vibration hides the noise of the specific force, and what that is at most at
-/// these rates [m/s^2]: 90 ug/sqrt(Hz) up to 500 Hz.
-const PARTS: usize = 20;
-const ACCEL_NOISE_MPS2: f64 = 0.02;
-/// The same of coloured noise, where it is slow.
-const SLOW_NOISE_MPS2: f64 = 0.05;
-/// Amplitude that coloured noise may have where it is slow, over its rows' and its colour: an AR(1) process of 0.5 has 0.6, one
-/// of 0.9 has 1.5, flicker at 1 Hz has 4.
-const SLOWER: f64 = 2.0;
 /// Rows of which one is looked at.
 const EVERY: usize = 7;
 /// Steps of the differences [m/s2], and over the slip rate.
@@ -31,9 +22,9 @@ const STEP: f64 = 0.1;
 pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64 {
     let (inputs, rate_noise) = (&problem.record.inputs, &problem.record.rate_noise);
     let (bearing, unbalance) = (&fit.physics.config.bearing, &fit.physics.config.unbalance);
-    let white = inputs.accel_mps2.each_ref().map(|axis| quietest(axis));
+    let [white, slow_mps2] = [|noise: ForceNoise| noise.white_mps2, |noise: ForceNoise| noise.slow_mps2]
+        .map(|of| problem.record.force_noise.map(of));
     let white_nm = unbalance.x_kg_m.hypot(unbalance.y_kg_m) * white.into_iter().fold(0.0, f64::max);
-    let slow_mps2 = [0, 1, 2].map(|axis| slow(white[axis], colour(&inputs.accel_mps2[axis])).min(SLOW_NOISE_MPS2));
     let slow_radps = slow(rate_noise.rms_radps, rate_noise.colour);
     let slip_radps = inputs.slip_radps(&fit.prediction);
     let viscous = Viscous::new(bearing);
@@ -46,7 +37,7 @@ pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64
             let mut moved = accel;
             moved[axis] += STEP_MPS2;
             let load = (load_nm(bearing, moved) - still_nm) / STEP_MPS2;
-            slow_mps2[axis] * (fixed[axis] + load * slip_radps[k].signum())
+            (white[axis] * load).hypot(slow_mps2[axis] * (fixed[axis] + load * slip_radps[k].signum()))
         };
         let speed = slip_radps[k].abs();
         // at the break it jumps, and a small error of the rate hardly ever gets there
@@ -57,28 +48,4 @@ pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64
     };
     let rows: Vec<f64> = (0..at.len()).step_by(EVERY).filter(|&k| at[k]).map(square).collect();
     (white_nm * white_nm + rows.iter().sum::<f64>() / rows.len().max(1) as f64).sqrt()
-}
-
-/// Noise of the specific force along an axis [m/s2] where it is quietest: elsewhere vibration is like noise.
-fn quietest(values: &[f64]) -> f64 {
-    let part = values.len().div_ceil(PARTS).max(1);
-    values.chunks(part).map(|part| rough(part, &vec![true; part.len()])).fold(ACCEL_NOISE_MPS2, f64::min)
-}
-
-/// White noise that has as much where it is slow as coloured noise.
-fn slow(noise: f64, colour: f64) -> f64 {
-    if colour > COLOURED { noise * SLOWER * colour } else { 0.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quietest;
-
-    #[test]
-    fn vibration_of_most_of_a_log_is_no_noise() {
-        let noise = |k: u32| f64::from(k.wrapping_mul(2_654_435_769) >> 16) / 65_536.0 - 0.5;
-        let vibration = |k: u32| if k < 18_000 { (0.9 * f64::from(k)).sin() } else { 0.0 };
-        let values: Vec<f64> = (0..20_000).map(|k| 0.01 * noise(k) + vibration(k)).collect();
-        assert!(quietest(&values) < 0.01, "{}", quietest(&values));
-    }
 }

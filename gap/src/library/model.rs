@@ -17,10 +17,11 @@ const ONE_OF_A_KIND: [&str; 8] = [
     "flexible_mode",
 ];
 /// Nominal parameters of parts, by their names among the nuisances.
-const NOMINAL: [(&str, &[&str]); 9] = [
+const NOMINAL: [(&str, &[&str]); 10] = [
     ("gyro", &["gyro_damping", "angular_momentum", "float inertia"]),
     ("servo", &["loop_gain", "T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9"]),
-    ("motor", &["motor_lag"]),
+    ("motor", &["motor_lag", "how pure the motor's delay is"]),
+    ("torque_sensor", &["torque read late"]),
     (
         "bearing",
         &[

@@ -20,6 +20,11 @@ const ROUNDNESS: f64 = 1.0;
 /// How inputs run between rows, from lines, 0, to cubics, 1, and a little more than those: nobody logs it.
 const CURVED: f64 = 1.25;
 
+/// How much of the motor's delay is pure [1]: a lag and a pure delay are both how its sheet may be read.
+const PURE: f64 = 0.25;
+/// How late the motor's torque may be read [s].
+const READ_LATE_S: f64 = 1e-4;
+
 /// One nominal parameter.
 #[derive(Debug, Clone, Copy)]
 pub struct Nuisance {
@@ -122,6 +127,8 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative(default, "float inertia", |p| &mut p.config.gyro.float_inertia_kg_m2),
         relative(default, "slip rate", |p| &mut p.config.bearing.slip_rate_radps),
         added(CURVED, "inputs between rows", |p| &mut p.curved),
+        added(PURE, "how pure the motor's delay is", |p| &mut p.pure_delay),
+        added(READ_LATE_S, "torque read late", |p| &mut p.measurement.torque_late_s),
         added(ROUNDNESS, "roundness of the clamp", |p| &mut p.friction.corner.wide),
         added(ROUNDNESS, "roundness of half its width", |p| &mut p.friction.corner.middle),
         added(ROUNDNESS, "roundness of its corners alone", |p| &mut p.friction.corner.narrow),

@@ -9,7 +9,7 @@
 use crate::window::{hann, spectrum};
 
 /// Colour from which on noise is not white.
-pub(crate) const COLOURED: f64 = 1.3;
+pub(super) const COLOURED: f64 = 1.3;
 /// Rows of a part, and the share of the parts that are looked at.
 const PART: usize = 1024;
 const QUIETEST: usize = 5;
@@ -20,7 +20,7 @@ const SLOW: [f64; 2] = [0.12, 0.24];
 const FAST: [f64; 2] = [0.6, 1.0];
 
 /// Colour of the noise of a signal; 1 where there is none, or motion hides it.
-pub(crate) fn colour(values: &[f64]) -> f64 {
+pub(super) fn colour(values: &[f64]) -> f64 {
     let window = hann(PART);
     let powers = values.chunks_exact(PART).filter_map(|part| {
         let mean = part.iter().sum::<f64>() / PART as f64;

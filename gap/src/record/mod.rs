@@ -3,6 +3,7 @@
 mod channel;
 mod colour;
 mod faults;
+mod force_noise;
 mod grid;
 mod hum;
 mod part;
@@ -21,8 +22,9 @@ use gimbal_servo::Config;
 use self::grid::{Grid, filled};
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
-pub(crate) use colour::{COLOURED, colour};
 pub use faults::{Data, faults};
+pub use force_noise::ForceNoise;
+pub(crate) use force_noise::slow;
 pub(crate) use part::BEGINNING_S;
 pub(crate) use plateau::{LEAST_STOP, peak_rad, plateau};
 pub use quiet::RateNoise;
@@ -62,6 +64,8 @@ pub struct Record {
     after_stops: Vec<Range<usize>>,
     /// Noise of the rate.
     pub rate_noise: RateNoise,
+    /// Noise of the specific force along each axis.
+    pub force_noise: [ForceNoise; 3],
     /// What makes a diagnosis impossible, in words.
     pub faults: Vec<String>,
     /// What is worth knowing.
@@ -138,6 +142,7 @@ impl Record {
             channels.push(channel);
         }
         let rate_noise = RateNoise::logged(&inputs.rate_radps);
+        let force_noise = inputs.accel_mps2.each_ref().map(|axis| ForceNoise::logged(axis));
         let mut record = Self {
             first_s: time.first().copied().unwrap_or(0.0),
             inputs,
@@ -146,6 +151,7 @@ impl Record {
             away_from_stop: None,
             after_stops: Vec::new(),
             rate_noise,
+            force_noise,
             faults,
             notes,
         };

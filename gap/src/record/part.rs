@@ -55,6 +55,7 @@ impl Record {
             away_from_stop: None,
             after_stops: Vec::new(),
             rate_noise: self.rate_noise.clone(),
+            force_noise: self.force_noise,
             faults: Vec::new(),
             notes,
         })

@@ -145,6 +145,11 @@ impl RateNoise {
     }
 }
 
+/// White noise of a signal whose motion may be as quick; none of one too short for a spectrum.
+pub(super) fn white_noise(values: &[f64]) -> Option<f64> {
+    (values.len() >= 2 * SEGMENT).then(|| lowest(&spectrum(values)))
+}
+
 /// White noise of a signal whose motion may be as quick, by its spectrum: what it has where that is lowest.
 fn lowest(spectrum: &[f64]) -> f64 {
     let mut lines = spectrum.to_vec();

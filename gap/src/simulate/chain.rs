@@ -6,6 +6,7 @@
 //! T_m        = F(s) / (1 + T s) theta                     (3)      a cascade of first-order sections
 //! section    : out = r in + y     T y' = (1 - r) in - y            r lead over lag; y as it shows at the output, so
 //!                                                                  that where it begins does not multiply lead and lag
+//! motor      : (T + b) T_m' = tau + b tau' - T_m    b = -p T / 2      p = 0 a lag T, p = 1 a pure delay T (Pade, order 1)
 //! delay d    : T_m = tau - d w'    w'' = 12/d^2 (tau - w) - 6/d w'   (Pade, order 2)
 //! appendage  : a = (2 pi f)^2 x + 2 z (2 pi f) x'   x = phi - q   Jg (1-r) phi'' = ... - r Jg a   q'' = a
 //! ```
@@ -81,9 +82,26 @@ impl Chain {
         self.set(INTEGRATOR, &signal, 1.0);
         let mut command: Vec<f64> = signal.iter().map(|value| servo.lead_time_constants_s[4] * value).collect();
         command[INTEGRATOR] += 1.0;
+        let ahead_s = -0.5 * physics.pure_delay * servo.motor_lag_s;
+        let rising = self.rising(&command);
+        command.iter_mut().zip(rising).for_each(|(own, rising)| *own += ahead_s * rising);
         command[TORQUE] -= 1.0;
-        self.set(TORQUE, &command, 1.0 / servo.motor_lag_s);
+        self.set(TORQUE, &command, 1.0 / (servo.motor_lag_s + ahead_s));
         self.command[TORQUE] = 1.0;
+    }
+
+    /// How fast a signal of the servo rises, as a row like its own; the pick-off's input stands still.
+    fn rising(&self, signal: &[f64]) -> Vec<f64> {
+        let n = self.command.len();
+        let mut rising = vec![0.0; n + 1];
+        for (state, share) in signal.iter().enumerate().take(INTEGRATOR + 1).skip(SECTION) {
+            for (column, value) in rising[..n].iter_mut().enumerate() {
+                *value += share * self.slope[(state, column)];
+            }
+            rising[n] += share * self.drive[(state, 2)];
+        }
+        rising[THETA_RATE] += signal[THETA];
+        rising
     }
 
     fn set(&mut self, state: usize, row: &[f64], factor: f64) {
@@ -147,5 +165,48 @@ impl Chain {
         self.slope[(THETA_RATE, PHI_RATE)] = gyro.angular_momentum_nm_s / gyro.float_inertia_kg_m2;
         self.slope[(THETA_RATE, THETA_RATE)] = -gyro.damping_nm_s_per_rad / gyro.float_inertia_kg_m2;
         self.drive[(THETA_RATE, 1)] = 1.0 / gyro.float_inertia_kg_m2;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Complex, DMatrix, DVector};
+
+    use super::{Chain, INTEGRATOR, SECTION, THETA, THETA_RATE, TORQUE};
+    use crate::library::platform;
+    use crate::simulate::Physics;
+
+    /// `T_m / theta` at a frequency, from the states of the servo alone.
+    fn response(physics: &Physics, s: Complex<f64>) -> Complex<f64> {
+        let chain = Chain::new(physics, false);
+        let count = TORQUE + 1 - SECTION;
+        let of = |value: f64| Complex::new(value, 0.0);
+        let own = |row: usize, column: usize| of(chain.slope[(SECTION + row, SECTION + column)]);
+        let left =
+            DMatrix::from_fn(count, count, |row, column| if row == column { s } else { of(0.0) } - own(row, column));
+        let drive = |state: usize, row: usize| of(chain.slope[(SECTION + row, state)]);
+        let right = DVector::from_fn(count, |row, _| drive(THETA, row) + s * drive(THETA_RATE, row));
+        left.lu().solve(&right).expect("regular")[TORQUE - SECTION]
+    }
+
+    #[test]
+    fn closed_form_the_motor_is_a_lag_a_pure_delay_or_between() {
+        assert_eq!(TORQUE, INTEGRATOR + 1);
+        let physics = platform(&gimbal_model_file::ModelFile::default());
+        let lag_s = physics.config.servo.motor_lag_s;
+        for frequency_hz in [0.3, 20.0, 84.0, 300.0] {
+            let s = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
+            let lag = response(&physics, s);
+            for share in [0.25, 1.0, -0.25] {
+                let between = response(&Physics { pure_delay: share, ..physics.clone() }, s);
+                let ahead_s = -0.5 * share * lag_s;
+                let motor = (1.0 + s * ahead_s) / (1.0 + s * (lag_s + ahead_s));
+                let right = lag * (1.0 + s * lag_s) * motor;
+                assert!((between / right - 1.0).norm() < 1e-9, "{share} at {frequency_hz} Hz: {between} and {right}");
+            }
+            let pure = response(&Physics { pure_delay: 1.0, ..physics.clone() }, s);
+            let delayed = lag * (1.0 + s * lag_s) * (-s * lag_s).exp();
+            assert!((pure / delayed - 1.0).norm() < 0.3 * (s.norm() * lag_s).powi(3).min(2.0), "{frequency_hz} Hz");
+        }
     }
 }

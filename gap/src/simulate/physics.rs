@@ -29,6 +29,8 @@ pub struct Physics {
     pub ripple: Option<Ripple>,
     /// Pure delay of the motor torque [s].
     pub delay_s: f64,
+    /// Whether the motor's own delay is a lag, 0, or a pure delay, 1.
+    pub pure_delay: f64,
     /// Clamp of the motor torque [N m].
     pub limit_nm: Option<f64>,
     /// Subtractive dead zone of the motor [N m].
@@ -171,6 +173,8 @@ pub struct Measurement {
     pub torque_bias_nm: f64,
     /// Inputs logged late by this [s].
     pub skew_s: f64,
+    /// Motor torque logged late by this [s].
+    pub torque_late_s: f64,
 }
 
 impl Default for Friction {
@@ -193,7 +197,14 @@ impl Default for Friction {
 
 impl Default for Measurement {
     fn default() -> Self {
-        Self { pickoff_factor: 1.0, pickoff_bias_rad: 0.0, torque_factor: 1.0, torque_bias_nm: 0.0, skew_s: 0.0 }
+        Self {
+            pickoff_factor: 1.0,
+            pickoff_bias_rad: 0.0,
+            torque_factor: 1.0,
+            torque_bias_nm: 0.0,
+            skew_s: 0.0,
+            torque_late_s: 0.0,
+        }
     }
 }
 
@@ -218,6 +229,7 @@ impl Physics {
             hysteresis: None,
             ripple: None,
             delay_s: 0.0,
+            pure_delay: 0.0,
             limit_nm: None,
             dead_zone_nm: 0.0,
             quantum_rad: 0.0,

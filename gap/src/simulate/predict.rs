@@ -52,6 +52,9 @@ impl Prediction {
                 *output = later(output, sensors.skew_s / period_s);
             }
         }
+        if sensors.torque_late_s != 0.0 {
+            self.motor_torque_nm = later(&self.motor_torque_nm, -sensors.torque_late_s / period_s);
+        }
         for theta in &mut self.gyro_angle_rad {
             *theta = *theta * sensors.pickoff_factor + sensors.pickoff_bias_rad;
         }

@@ -313,6 +313,18 @@ fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
     assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
 }
 
+/// A delay of the same length, a tenth of it pure.
+#[test]
+fn a_motor_whose_delay_is_pure_in_part_is_no_gap() {
+    let log = log_with(Excitation::Manoeuvre, &[("loop_delay", vec![1e-4]), ("motor_lag", vec![-0.1])]);
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:?}", names(&diagnosis));
+    let mut known = ModelFile::default();
+    known.known_good = vec!["motor"];
+    let of_a_lag = names(&diagnose(&log, &known));
+    assert!(of_a_lag.contains(&"loop_delay"), "of a motor that is known to be a lag: {of_a_lag:?}");
+}
+
 /// With `phi' + e w_x` for `phi'`, which the gyro sees, the equations are those of a platform whose vehicle turns by `e w_x` more
 /// and on which the torque `Jg e w_x'` acts.
 #[test]
