@@ -9,7 +9,7 @@
 //! noise of an axis or of the rate that is not white.
 
 use crate::fit::{Fit, Problem};
-use crate::record::{ForceNoise, slow};
+use crate::record::slow;
 use crate::simulate::{Viscous, load_nm};
 
 /// Rows of which one is looked at.
@@ -22,9 +22,9 @@ const STEP: f64 = 0.1;
 pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64 {
     let (inputs, rate_noise) = (&problem.record.inputs, &problem.record.rate_noise);
     let (bearing, unbalance) = (&fit.physics.config.bearing, &fit.physics.config.unbalance);
-    let [white, slow_mps2] = [|noise: ForceNoise| noise.white_mps2, |noise: ForceNoise| noise.slow_mps2]
-        .map(|of| problem.record.force_noise.map(of));
-    let white_nm = unbalance.x_kg_m.hypot(unbalance.y_kg_m) * white.into_iter().fold(0.0, f64::max);
+    let force_noise = &problem.record.force_noise;
+    let white_mps2 = force_noise.iter().map(|axis| axis.white_mps2).fold(0.0, f64::max);
+    let white_nm = unbalance.x_kg_m.hypot(unbalance.y_kg_m) * white_mps2;
     let slow_radps = slow(rate_noise.rms_radps, rate_noise.colour);
     let slip_radps = inputs.slip_radps(&fit.prediction);
     let viscous = Viscous::new(bearing);
@@ -37,7 +37,8 @@ pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64
             let mut moved = accel;
             moved[axis] += STEP_MPS2;
             let load = (load_nm(bearing, moved) - still_nm) / STEP_MPS2;
-            (white[axis] * load).hypot(slow_mps2[axis] * (fixed[axis] + load * slip_radps[k].signum()))
+            let noise = force_noise[axis];
+            (noise.white_mps2 * load).hypot(noise.slow_mps2 * (fixed[axis] + load * slip_radps[k].signum()))
         };
         let speed = slip_radps[k].abs();
         // at the break it jumps, and a small error of the rate hardly ever gets there
