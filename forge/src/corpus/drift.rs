@@ -15,8 +15,7 @@ use crate::truth::Truth;
 pub(super) const DEFAULT: f64 = 0.03;
 /// Tolerance of the bearings' torques, relative: the paper's own scatter.
 pub(super) const FRICTION_LEVEL: f64 = 0.15;
-/// How much of the motor's delay may be pure and how much is in a drive that has some: the paper calls all of it a delay,
-/// the nominal model has a lag.
+/// Largest share of the motor's delay that is pure: the paper calls all of it a delay, the nominal model has a lag.
 const PURE: f64 = 0.125;
 /// Its name.
 const PURE_DELAY: &str = "pure_delay";
