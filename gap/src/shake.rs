@@ -67,7 +67,7 @@ fn with_torque(Settled { problem, search, .. }: &Settled, places: [usize; 2]) ->
         if hz < LEAST_HZ {
             continue;
         }
-        let answer = servo_answer(servo, hz, period_s) * angle;
+        let answer = servo_answer(&fit.physics, hz, period_s) * angle;
         square += (answer.conj() * torque).re * per_torque(servo, hz);
         chance += 0.5 * answer.norm_sqr() * torque.norm_sqr() * per_torque(servo, hz).powi(2);
     }
@@ -79,7 +79,7 @@ fn with_torque(Settled { problem, search, .. }: &Settled, places: [usize; 2]) ->
 /// From the shape of the pick-off's noise, where most of it is what the loop makes.
 fn by_shape(Settled { problem, search, .. }: &Settled, angle: usize) -> Option<f64> {
     let period_s = problem.record.inputs.period_s;
-    let servo = &search.closest().physics.config.servo;
+    let physics = &search.closest().physics;
     let (mut square, mut in_loop, mut all) = (0.0, 0.0, 0.0);
     for line in 1..LINES {
         let hz = 0.5 * f64::from(line) / (f64::from(LINES) * period_s);
@@ -87,7 +87,7 @@ fn by_shape(Settled { problem, search, .. }: &Settled, angle: usize) -> Option<f
             continue;
         }
         let [own, every] = problem.in_loop_and_all(angle, hz);
-        square += own * servo_answer(servo, hz, period_s).norm_sqr() * per_torque(servo, hz);
+        square += own * servo_answer(physics, hz, period_s).norm_sqr() * per_torque(&physics.config.servo, hz);
         in_loop += own;
         all += every;
     }

@@ -15,8 +15,9 @@ use crate::truth::Truth;
 pub(super) const DEFAULT: f64 = 0.03;
 /// Tolerance of the bearings' torques, relative: the paper's own scatter.
 pub(super) const FRICTION_LEVEL: f64 = 0.15;
-/// Largest share of the motor's delay that is pure: the paper calls all of it a delay, the nominal model has a lag.
-const PURE: f64 = 0.125;
+/// Largest share of the motor's delay that is pure: the paper calls all of it a delay, the nominal model has a lag, and half
+/// of it is what a servo holds that takes samples as far apart as it is long.
+const PURE: f64 = 0.5;
 /// Its name.
 const PURE_DELAY: &str = "pure_delay";
 /// Largest turn of an accelerometer [rad].

@@ -42,10 +42,9 @@ pub(crate) struct Ground<'a> {
     /// Sensitivities and nominal residual over the noise.
     raw: Vec<Kept>,
     target: Signals,
-    /// After an impulse of torque, and what noise looks like behind the loop.
-    impulse: Impulse,
     plans: Plans,
-    shapes: Arc<Vec<Shapes>>,
+    /// The loop of the nominal platform.
+    behind: Behind,
     valid: Vec<bool>,
     /// Rows at which the bearing turns around, or nearly does, and what the noise of the rate does there.
     turns: Vec<bool>,
@@ -64,6 +63,22 @@ pub(crate) struct Known {
     pub(crate) gap: Signals,
     /// The platform behind that noise.
     pub(crate) platform: Fitted,
+}
+
+/// What noise looks like behind a loop.
+#[derive(Debug, Clone)]
+struct Behind {
+    impulse: Impulse,
+    shapes: Arc<Vec<Shapes>>,
+}
+
+impl Behind {
+    fn new(physics: &Physics, record: &Record, over_noise: &[f64], plans: &Plans) -> Self {
+        let impulse = impulse(physics, record, over_noise);
+        let signals: Vec<Signal> = record.channels.iter().map(|channel| channel.signal).collect();
+        let shapes = Arc::new(Shapes::of(&impulse, &signals, plans, record.inputs.period_s));
+        Self { impulse, shapes }
+    }
 }
 
 /// A platform as it was fitted. A few per cent of the loop's frequency, a tolerance, are a fifth of what is left of a pulse
@@ -104,15 +119,12 @@ impl<'a> Ground<'a> {
         candidates.retain(|candidate| !not_looked_for.contains(&candidate.effect));
         let draft = Draft { record, base: &base, begin: &begin, nominal: &nominal, over_noise: &over_noise };
         let (columns, raw, sigma) = draft.columns(&nuisances, &candidates);
-        let impulse = impulse(&base, record, &over_noise);
-        let signals: Vec<Signal> = record.channels.iter().map(|channel| channel.signal).collect();
         let plans = Whitener::plans_of(record.rows());
         Self {
             record,
             stop_rad: model.config.gyro.stop_angle_rad,
             target: scaled(target, &over_noise),
-            shapes: Arc::new(Shapes::of(&impulse, &signals, &plans, record.inputs.period_s)),
-            impulse,
+            behind: Behind::new(&base, record, &over_noise, &plans),
             plans,
             valid: valid(record),
             turns: turns(&base, record, &nominal),
@@ -159,9 +171,10 @@ impl<'a> Ground<'a> {
                 (scaled(noise, &self.over_noise), scaled(gap, &self.over_noise), Some(platform))
             }
         };
-        let whitener = self.whitener(&noise, platform.as_ref());
-        let period_s = self.record.inputs.period_s;
-        let path = Path::new(&whitener, &self.impulse.channels, self.impulse.torque_nm, period_s);
+        let behind = platform.as_ref().map_or_else(|| self.behind.clone(), |own| self.behind(&own.physics));
+        let whitener = self.whitener(&noise, platform.as_ref(), &behind.shapes);
+        let impulse = &behind.impulse;
+        let path = Path::new(&whitener, &impulse.channels, impulse.torque_nm, self.record.inputs.period_s);
         let (mut candidates, mut columns, mut sigma) =
             (self.candidates.clone(), self.columns.clone(), self.sigma.clone());
         let mut probes = self.raw.len();
@@ -182,8 +195,8 @@ impl<'a> Ground<'a> {
             columns,
             whitened: Vec::new(),
             gram: nalgebra::DMatrix::zeros(0, 0),
-            shapes: self.shapes.clone(),
-            impulse_nm: self.impulse.torque_nm,
+            impulse_nm: impulse.torque_nm,
+            shapes: behind.shapes,
             whitener,
             path,
             turns_mostly: mostly(&self.turns),
@@ -221,12 +234,16 @@ impl<'a> Ground<'a> {
         Draft { record: self.record, base, begin, nominal, over_noise: &self.over_noise }
     }
 
-    fn whitener(&self, rest: &Signals, platform: Option<&Fitted>) -> Whitener {
+    fn behind(&self, physics: &Physics) -> Behind {
+        Behind::new(physics, self.record, &self.over_noise, &self.plans)
+    }
+
+    fn whitener(&self, rest: &Signals, platform: Option<&Fitted>, shapes: &[Shapes]) -> Whitener {
         let (base, record, nominal, turns) = (&self.base, self.record, &self.nominal, &self.turns);
         let turning_noise = if at_once(turns) { 0.0 } else { turning_noise(base, record, nominal, turns) };
         let (period_s, rate_noise) = (record.inputs.period_s, &record.rate_noise);
         let turning = &remembered(turns);
-        let (plans, shapes) = (&self.plans, &self.shapes);
+        let plans = &self.plans;
         let behind = Loop { plans, shapes, turning, turning_noise, rate_noise, period_s };
         let turning = |base, begin, nominal| {
             let draft = Draft { record, base, begin, nominal, over_noise: &self.over_noise };

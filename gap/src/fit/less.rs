@@ -47,8 +47,7 @@ fn inside_tolerances(problem: &Problem, fit: &Fit, set: &Set) -> Fit {
     let mut from = fit.clone();
     for index in fit.set.0.iter().filter(|index| !set.0.contains(index)) {
         for place in problem.candidates[*index].releases.iter().filter_map(|name| problem.nuisance(name)) {
-            let tolerance = problem.nuisances[place].tolerance;
-            from.shifts[place] = from.shifts[place].clamp(-tolerance, tolerance);
+            from.shifts[place] = problem.nuisances[place].within(from.shifts[place]);
         }
     }
     from

@@ -137,10 +137,11 @@ impl<'a> Equations<'a> {
             let Some(solution) = solve(&self.gram, &drive, &chosen, &damped) else { break };
             let step = &solution.coefficients;
             let next: Vec<f64> = shifts.iter().enumerate().map(|(place, shift)| shift + step[state + place]).collect();
-            let mut same =
-                next.iter().zip(&ahead).zip(&problem.nuisances).all(|((next, ahead), nuisance)| {
-                    ahead.abs() > nuisance.tolerance || next.abs() <= nuisance.tolerance
-                });
+            let mut same = next
+                .iter()
+                .zip(&ahead)
+                .zip(&problem.nuisances)
+                .all(|((next, ahead), nuisance)| nuisance.is_beyond(*ahead) || !nuisance.is_beyond(*next));
             for (place, next) in next.iter().enumerate() {
                 if held[place].is_none() && next.abs() > limits[place] {
                     held[place] = Some(limits[place].copysign(*next));
@@ -152,7 +153,7 @@ impl<'a> Equations<'a> {
             found = Some(Step { solution, promised });
             // a wall that was met stays for this step
             for ((ahead, next), nuisance) in ahead.iter_mut().zip(next).zip(&problem.nuisances) {
-                if ahead.abs() <= nuisance.tolerance {
+                if !nuisance.is_beyond(*ahead) {
                     *ahead = next;
                 }
             }

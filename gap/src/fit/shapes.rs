@@ -11,12 +11,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use gimbal_servo::servo;
 use realfft::num_complex::Complex;
 
 use super::plans::Plans;
 use super::signals::Signals;
 use crate::record::{Signal, between};
+use crate::simulate::Physics;
 
 /// Images of a spectrum that are summed, to either side.
 const IMAGES: i32 = 2;
@@ -28,9 +28,9 @@ const FILTER_HZ: f64 = 150.0;
 pub(crate) struct Impulse {
     /// Every channel, over its noise.
     pub(crate) channels: Signals,
-    /// `T_m` of the platform [N m], and its servo.
+    /// `T_m` of the platform [N m], and what its loop is made of.
     pub(crate) motor_torque_nm: Vec<f64>,
-    pub(crate) servo: servo::Config,
+    pub(crate) physics: Physics,
     /// The torque, over one row [N m].
     pub(crate) torque_nm: f64,
 }
@@ -59,7 +59,9 @@ impl Shapes {
                 let hz = line as f64 * step_hz;
                 let [held, on_lines] = match signal {
                     Signal::GyroAngle => [1.0; 2],
-                    Signal::MotorTorque if line > 0 => answers(&impulse.servo, hz, period_s).map(|own| own.norm_sqr()),
+                    Signal::MotorTorque if line > 0 => {
+                        answers(&impulse.physics, hz, period_s).map(|own| own.norm_sqr())
+                    }
                     _ => [0.0; 2],
                 };
                 [held, on_lines, on_lines * passed(hz, FILTER_HZ, 2)].map(|own| closed * own)
@@ -89,17 +91,17 @@ impl Shapes {
 }
 
 /// What the motor's torque makes of a pick-off's samples, on lines between them [N m/rad].
-pub(crate) fn servo_answer(servo: &servo::Config, hz: f64, period_s: f64) -> Complex<f64> {
-    answers(servo, hz, period_s)[1]
+pub(crate) fn servo_answer(physics: &Physics, hz: f64, period_s: f64) -> Complex<f64> {
+    answers(physics, hz, period_s)[1]
 }
 
 /// What sampled noise of the pick-off, held between samples and on lines, makes of the motor's torque: F at a frequency and at
 /// its images.
-fn answers(servo: &servo::Config, hz: f64, period_s: f64) -> [Complex<f64>; 2] {
+fn answers(physics: &Physics, hz: f64, period_s: f64) -> [Complex<f64>; 2] {
     let mut answers = [Complex::ZERO; 2];
     for image in -IMAGES..=IMAGES {
         let hz = hz - f64::from(image) / period_s;
-        let (turn, own) = (PI * hz * period_s, transfer(servo, hz));
+        let (turn, own) = (PI * hz * period_s, transfer(physics, hz));
         let sinc = turn.sin() / turn;
         answers[0] += own * Complex::from_polar(sinc, -turn);
         answers[1] += own * (sinc * sinc);
@@ -113,12 +115,13 @@ pub(super) fn passed(hz: f64, end_hz: f64, poles: i32) -> f64 {
 }
 
 /// F at a frequency [N m/rad].
-fn transfer(servo: &servo::Config, hz: f64) -> Complex<f64> {
+fn transfer(physics: &Physics, hz: f64) -> Complex<f64> {
+    let servo = &physics.config.servo;
     let s = Complex::new(0.0, TAU * hz);
     let section = |time_s: &f64| 1.0 + time_s * s;
     let zeros: Complex<f64> = servo.lead_time_constants_s.iter().map(section).product();
     let poles: Complex<f64> = servo.lag_time_constants_s.iter().map(section).product();
-    servo.gain_nm_per_rad_s * zeros / (s * poles * section(&servo.motor_lag_s))
+    servo.gain_nm_per_rad_s * zeros * (-physics.delay_s * s).exp() / (s * poles * section(&servo.motor_lag_s))
 }
 
 #[cfg(test)]
@@ -127,14 +130,15 @@ mod tests {
     use realfft::num_complex::Complex;
 
     use super::{answers, transfer};
+    use crate::simulate::Physics;
 
     #[test]
     fn closed_form_a_slow_sample_is_answered_as_what_is_continuous() {
-        let servo = Config::consistent().servo;
+        let physics = Physics::nominal(&Config::consistent());
         for hz in [0.1, 0.3] {
-            let exact = transfer(&servo, hz);
+            let exact = transfer(&physics, hz);
             let late = Complex::from_polar(1.0, -std::f64::consts::PI * hz * 1e-3);
-            let [held, on_lines] = answers(&servo, hz, 1e-3);
+            let [held, on_lines] = answers(&physics, hz, 1e-3);
             assert!((on_lines / exact - 1.0).norm() < 0.01, "{hz}");
             assert!((held / (exact * late) - 1.0).norm() < 0.05, "{hz}");
         }

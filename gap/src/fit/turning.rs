@@ -18,10 +18,7 @@ const AFTER_TURNING: usize = 400;
 
 /// The loop after an impulse of torque on the gimbal, bearings and unbalance aside; its channels over their noise.
 pub(crate) fn impulse(base: &Physics, record: &Record, over_noise: &[f64]) -> Impulse {
-    let mut physics = base.clone();
-    physics.config.bearing.count = 0;
-    physics.config.unbalance.x_kg_m = 0.0;
-    physics.config.unbalance.y_kg_m = 0.0;
+    let physics = base.loop_alone();
     let rows = 4000;
     let zero = || vec![0.0; rows];
     let mut inputs = crate::simulate::Inputs {
@@ -39,13 +36,14 @@ pub(crate) fn impulse(base: &Physics, record: &Record, over_noise: &[f64]) -> Im
         channels: scaled(channels, over_noise),
         torque_nm: impulse_nm(base, record),
         motor_torque_nm: run.motor_torque_nm,
-        servo: base.config.servo,
+        physics,
     }
 }
 
 /// The torque of that impulse, over one row [N m].
 pub(crate) fn impulse_nm(base: &Physics, record: &Record) -> f64 {
-    base.config.servo.gimbal_inertia_kg_m2 * IMPULSE_RADPS / record.inputs.period_s
+    let carried = base.appendage.map_or(0.0, |[ratio, ..]| ratio);
+    base.config.servo.gimbal_inertia_kg_m2 * (1.0 - carried) * IMPULSE_RADPS / record.inputs.period_s
 }
 
 /// Rows at which the bearing turns around: within the slip rate, or past it from one row to the next.

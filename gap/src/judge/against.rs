@@ -5,6 +5,7 @@ use gimbal_plant::{Bound, Effect, Parameter};
 
 use super::set::with_one_less;
 use crate::fit::{Fit, Problem, Search};
+use crate::library::PURE_DELAY;
 
 /// A parameter at the end of its range [nats].
 const BOUND_HIT: f64 = 20.0;
@@ -19,6 +20,8 @@ const NEVER_NEGATIVE: [&str; 2] = ["cable_hysteresis", "stribeck"];
 const MOST_OF_IT: f64 = 0.5;
 /// Share of its least realistic value below which a size hits the end of its range.
 const FAR_BELOW: f64 = 0.03;
+/// Share of the motor's delay up to which it may be more or less pure beside an effect that shifts that delay.
+const MORE_OR_LESS_PURE: f64 = 0.05;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(super) const BEYOND: f64 = 1.15;
 /// What an effect must take away to be there when its size is not known to be more than zero [nats].
@@ -34,20 +37,34 @@ pub(super) fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: 
     let of = |(place, &index): (usize, &usize)| {
         let candidate = &problem.candidates[index];
         let (values, errors) = (&fit.values[place], &fit.errors[place]);
+        let traded = traded(problem, fit, candidate.effect);
         let idle = if fit.is_idle(place) && !helps(search, fit, place) { NEVER } else { 0.0 };
-        idle + if candidate.effect == "cable_hysteresis" && fit.effects.contains(&"presliding") {
-            beside_presliding(at_a_bound(candidate.effect, values, errors))
-        } else if candidate.effect == "presliding" && values[0] < shortest_rad {
-            NEVER
-        } else if candidate.releases.is_empty() {
-            at_a_bound(candidate.effect, values, errors)
-        } else if beyond(problem, tolerance, candidate.effect, values, errors) {
-            0.0
-        } else {
-            NEVER
-        }
+        idle + traded
+            + if candidate.effect == "cable_hysteresis" && fit.effects.contains(&"presliding") {
+                beside_presliding(at_a_bound(candidate.effect, values, errors))
+            } else if candidate.effect == "presliding" && values[0] < shortest_rad {
+                NEVER
+            } else if candidate.releases.is_empty() {
+                at_a_bound(candidate.effect, values, errors)
+            } else if beyond(problem, tolerance, candidate.effect, values, errors) {
+                0.0
+            } else {
+                NEVER
+            }
     };
     fit.set.0.iter().enumerate().map(of).sum()
+}
+
+/// What speaks against a longer lag of which a part is pure, which a delay more is by itself; and against a delay more that
+/// leaves the motor less pure than a lag, which a longer lag is [nats].
+fn traded(problem: &Problem, fit: &Fit, effect: &str) -> f64 {
+    let pure = problem.nuisance(PURE_DELAY).map_or(0.0, |place| fit.shifts[place]);
+    let traded = match effect {
+        "motor_lag" => pure,
+        "loop_delay" => (-pure).max(0.0),
+        _ => 0.0,
+    };
+    2.0 * (0.5 * (traded / MORE_OR_LESS_PURE).powi(2)).ln_1p()
 }
 
 /// What a bound of a cable's loop costs where friction builds up over a displacement: one that yields as soon as that does is the

@@ -54,7 +54,7 @@ pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<b
     for &k in &slow {
         about[k] = errors[k];
     }
-    let answer = |hz: f64| fast(hz) * servo_answer(&fit.physics.config.servo, hz.max(least_hz), period_s);
+    let answer = |hz: f64| fast(hz) * servo_answer(&fit.physics, hz.max(least_hz), period_s);
     let answers = filtered(&about, &plans, period_s, answer);
     let with: f64 = slow.iter().map(|&k| answers[k] * torques[k]).sum();
     let square: f64 = slow.iter().map(|&k| answers[k] * answers[k]).sum();

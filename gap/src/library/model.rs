@@ -2,7 +2,7 @@
 
 use gimbal_model_file::{ModelFile, known_good};
 
-use super::{Nuisance, apply};
+use super::{Nuisance, PURE_DELAY, apply};
 use crate::simulate::Physics;
 
 /// Effects of which a platform has one: a second would take its place, so a change of it is not looked for.
@@ -20,7 +20,7 @@ const ONE_OF_A_KIND: [&str; 8] = [
 const NOMINAL: [(&str, &[&str]); 10] = [
     ("gyro", &["gyro_damping", "angular_momentum", "float inertia"]),
     ("servo", &["loop_gain", "T1", "T2", "T3", "T4", "T5", "T6", "T7", "T8", "T9"]),
-    ("motor", &["motor_lag", "how pure the motor's delay is"]),
+    ("motor", &["motor_lag", PURE_DELAY]),
     ("torque_sensor", &["torque read late"]),
     (
         "bearing",
@@ -31,6 +31,7 @@ const NOMINAL: [(&str, &[&str]); 10] = [
             "roundness of the clamp",
             "roundness of half its width",
             "roundness of its corners alone",
+            "displacement of the clamp",
         ],
     ),
     ("balance", &["unbalance x", "unbalance y"]),
@@ -66,7 +67,6 @@ pub fn hold(nuisances: &mut [Nuisance], known: &[&str]) {
         NOMINAL.iter().any(|(part, own)| (known.contains(part) || effects.contains(part)) && own.contains(&name))
     };
     for nuisance in nuisances.iter_mut().filter(|own| effects.contains(&own.name) || of_part(own.name)) {
-        nuisance.sigma *= HELD;
-        nuisance.tolerance *= HELD;
+        nuisance.hold(HELD);
     }
 }

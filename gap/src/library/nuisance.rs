@@ -9,6 +9,9 @@ const UNIFORM: f64 = 0.7;
 /// The same for what lies beyond it.
 const BEYOND: f64 = 0.04;
 
+/// How much less than nothing a fit may try, of what cannot be less.
+const LESS: f64 = 0.05;
+
 /// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of 1 % would not.
 const STEP: f64 = 0.02;
 /// Alignment of the accelerometers with the platform's axes, about each [rad]: the model file has no name for it.
@@ -17,11 +20,16 @@ const ALIGNMENT_RAD: f64 = 1e-3;
 /// the model file has no name for it.
 const ROUNDNESS: f64 = 1.0;
 
+/// Displacement over which the clamp's friction follows the rate [rad]: nobody knows it to be none.
+const FOLLOWS_RAD: f64 = 1e-6;
+
 /// How inputs run between rows, from lines, 0, to cubics, 1, and a little more than those: nobody logs it.
 const CURVED: f64 = 1.25;
 
 /// How much of the motor's delay is pure [1]: a lag and a pure delay are both how its sheet may be read.
-const PURE: f64 = 0.25;
+const PURE: f64 = 1.0;
+/// Its name.
+pub(crate) const PURE_DELAY: &str = "how pure the motor's delay is";
 /// How late the motor's torque may be read [s].
 const READ_LATE_S: f64 = 1e-4;
 
@@ -34,6 +42,8 @@ pub struct Nuisance {
     pub sigma: f64,
     /// Up to here a shift is no gap.
     pub tolerance: f64,
+    /// How far one goes the other way.
+    below: f64,
     /// Step of the finite difference.
     pub step: f64,
     field: Field,
@@ -44,14 +54,45 @@ pub struct Nuisance {
 type Field = fn(&mut Physics) -> &mut f64;
 
 fn relative(tolerance: f64, name: &'static str, field: Field) -> Nuisance {
-    Nuisance { name, sigma: UNIFORM * tolerance, tolerance, step: STEP * tolerance, field, absolute: false }
+    let (sigma, step) = (UNIFORM * tolerance, STEP * tolerance);
+    Nuisance { name, sigma, tolerance, below: tolerance, step, field, absolute: false }
 }
 
 fn added(tolerance: f64, name: &'static str, field: Field) -> Nuisance {
     Nuisance { absolute: true, ..relative(tolerance, name, field) }
 }
 
+/// One that is not there less than not at all.
+fn never_less(tolerance: f64, name: &'static str, field: Field) -> Nuisance {
+    Nuisance { below: LESS * tolerance, ..added(tolerance, name, field) }
+}
+
 impl Nuisance {
+    /// Up to where a shift is no gap, the way that another one goes.
+    #[must_use]
+    pub fn end(&self, toward: f64) -> f64 {
+        if toward < 0.0 { self.below } else { self.tolerance }
+    }
+
+    /// Whether a shift is beyond that.
+    #[must_use]
+    pub fn is_beyond(&self, shift: f64) -> bool {
+        shift.abs() > self.end(shift)
+    }
+
+    /// A shift that is not beyond it.
+    #[must_use]
+    pub fn within(&self, shift: f64) -> f64 {
+        shift.clamp(-self.below, self.tolerance)
+    }
+
+    /// Known so many times better.
+    pub(super) fn hold(&mut self, by: f64) {
+        self.sigma *= by;
+        self.tolerance *= by;
+        self.below *= by;
+    }
+
     /// Half the slope and half the curvature of the prior's cost at a shift, and the cost; of the parabola that
     /// holds at the shift `ahead`.
     ///
@@ -60,14 +101,13 @@ impl Nuisance {
     /// ```
     #[must_use]
     pub fn prior(&self, shift: f64, ahead: f64) -> (f64, f64, f64) {
-        let tolerance = self.tolerance;
-        let wall = BEYOND * tolerance;
+        let wall = BEYOND * self.tolerance;
         let flat = 1.0 / (self.sigma * self.sigma);
-        if ahead.abs() <= tolerance {
+        if !self.is_beyond(ahead) {
             return (flat * shift, flat, flat * shift * shift);
         }
         let steep = 1.0 / (wall * wall);
-        let beyond = shift - tolerance.copysign(ahead);
+        let beyond = shift - self.end(ahead).copysign(ahead);
         (flat * shift + steep * beyond, flat + steep, flat * shift * shift + steep * beyond * beyond)
     }
 
@@ -127,11 +167,12 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         relative(default, "float inertia", |p| &mut p.config.gyro.float_inertia_kg_m2),
         relative(default, "slip rate", |p| &mut p.config.bearing.slip_rate_radps),
         added(CURVED, "inputs between rows", |p| &mut p.curved),
-        added(PURE, "how pure the motor's delay is", |p| &mut p.pure_delay),
-        added(READ_LATE_S, "torque read late", |p| &mut p.measurement.torque_late_s),
+        never_less(PURE, PURE_DELAY, |p| &mut p.pure_delay),
+        never_less(READ_LATE_S, "torque read late", |p| &mut p.measurement.torque_late_s),
         added(ROUNDNESS, "roundness of the clamp", |p| &mut p.friction.corner.wide),
         added(ROUNDNESS, "roundness of half its width", |p| &mut p.friction.corner.middle),
         added(ROUNDNESS, "roundness of its corners alone", |p| &mut p.friction.corner.narrow),
+        never_less(FOLLOWS_RAD, "displacement of the clamp", |p| &mut p.friction.follows_rad),
         relative(default, "T1", |p| &mut p.config.servo.lead_time_constants_s[0]),
         relative(default, "T2", |p| &mut p.config.servo.lead_time_constants_s[1]),
         relative(default, "T3", |p| &mut p.config.servo.lead_time_constants_s[2]),
@@ -152,7 +193,7 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
 mod tests {
     use gimbal_model_file::{ModelFile, Tolerance};
 
-    use super::nuisances;
+    use super::{PURE_DELAY, nuisances};
     use crate::library::platform;
 
     #[test]
@@ -181,6 +222,16 @@ mod tests {
         let bias = of(2e-5).expect("a nominal parameter");
         assert!((bias.tolerance / (2e-5 * physics.config.gyro.angular_momentum_nm_s) - 1.0).abs() < 1e-12);
         assert!((bias.change(&physics, bias.tolerance) / bias.tolerance - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn contract_what_cannot_be_less_than_none_is_no_less() {
+        let all = nuisances(&Tolerance::default(), &platform(&ModelFile::default()));
+        for name in [PURE_DELAY, "torque read late", "displacement of the clamp"] {
+            let own = all.iter().find(|own| own.name == name).expect("a nominal parameter");
+            let cost = |share: f64| own.prior(share * own.tolerance, share * own.tolerance).2;
+            assert!(cost(0.9) < 2.0 && cost(-0.04) < 1.0 && cost(-0.5) > 100.0 && cost(1.5) > 100.0, "{name}");
+        }
     }
 
     #[test]

@@ -43,7 +43,7 @@ impl Prior {
 
     /// Whether a value is behind a wall.
     pub(super) fn is_beyond(&self, value: f64) -> bool {
-        matches!(self, Self::Nominal(nuisance) if value.abs() > nuisance.tolerance)
+        matches!(self, Self::Nominal(nuisance) if nuisance.is_beyond(value))
     }
 }
 

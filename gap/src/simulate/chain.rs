@@ -6,7 +6,8 @@
 //! T_m        = F(s) / (1 + T s) theta                     (3)      a cascade of first-order sections
 //! section    : out = r in + y     T y' = (1 - r) in - y            r lead over lag; y as it shows at the output, so
 //!                                                                  that where it begins does not multiply lead and lag
-//! motor      : (T + b) T_m' = tau + b tau' - T_m    b = -p T / 2      p = 0 a lag T, p = 1 a pure delay T (Pade, order 1)
+//! motor      : (T + b) T_m' = tau + b tau' + c tau'' - T_m        exp(-h T s) / (1 + k T s), k = 1 - h, up to the third order:
+//!              b = -2/3 T (1 - k^3) / (1 + k^2)    c = -T b - T^2 (1 - k^2) / 2      h = 0 a lag T, h = 1 a pure delay T (Pade, 2/1)
 //! delay d    : T_m = tau - d w'    w'' = 12/d^2 (tau - w) - 6/d w'   (Pade, order 2)
 //! appendage  : a = (2 pi f)^2 x + 2 z (2 pi f) x'   x = phi - q   Jg (1-r) phi'' = ... - r Jg a   q'' = a
 //! ```
@@ -43,6 +44,8 @@ pub(crate) struct Chain {
     pub(crate) slope: DMatrix<f64>,
     pub(crate) drive: DMatrix<f64>,
     pub(crate) command: Vec<f64>,
+    /// T_m jumps by this where theta' does [N m s/rad].
+    pub(crate) jump: f64,
 }
 
 impl Chain {
@@ -52,8 +55,9 @@ impl Chain {
 
     pub(crate) fn new(physics: &Physics, on_stop: bool) -> Self {
         let n = Self::states(physics);
-        let mut chain = Self { slope: DMatrix::zeros(n, n), drive: DMatrix::zeros(n, INPUTS), command: vec![0.0; n] };
-        chain.servo(physics);
+        let mut chain =
+            Self { slope: DMatrix::zeros(n, n), drive: DMatrix::zeros(n, INPUTS), command: vec![0.0; n], jump: 0.0 };
+        chain.servo(physics, on_stop);
         chain.delay(physics.delay_s);
         chain.gimbal(physics, on_stop);
         if !on_stop {
@@ -62,7 +66,7 @@ impl Chain {
         chain
     }
 
-    fn servo(&mut self, physics: &Physics) {
+    fn servo(&mut self, physics: &Physics, on_stop: bool) {
         let servo = &physics.config.servo;
         let n = self.command.len();
         // the signal along the cascade, as a row over states and the pick-off's input
@@ -82,16 +86,21 @@ impl Chain {
         self.set(INTEGRATOR, &signal, 1.0);
         let mut command: Vec<f64> = signal.iter().map(|value| servo.lead_time_constants_s[4] * value).collect();
         command[INTEGRATOR] += 1.0;
-        let ahead_s = -0.5 * physics.pure_delay * servo.motor_lag_s;
-        let rising = self.rising(&command);
-        command.iter_mut().zip(rising).for_each(|(own, rising)| *own += ahead_s * rising);
+        let motor = Motor::new(physics);
+        self.jump = motor.bend_s2 / motor.lag_s * command[THETA];
+        let rising = self.rising(&command, physics, on_stop);
+        let bending = self.rising(&rising, physics, on_stop);
+        for (own, (rising, bending)) in command.iter_mut().zip(rising.iter().zip(&bending)) {
+            *own += motor.ahead_s * rising + motor.bend_s2 * bending;
+        }
         command[TORQUE] -= 1.0;
-        self.set(TORQUE, &command, 1.0 / (servo.motor_lag_s + ahead_s));
+        self.set(TORQUE, &command, 1.0 / motor.lag_s);
         self.command[TORQUE] = 1.0;
     }
 
-    /// How fast a signal of the servo rises, as a row like its own; the pick-off's input stands still.
-    fn rising(&self, signal: &[f64]) -> Vec<f64> {
+    /// How fast a signal of the servo rises, as a row like its own; the pick-off's input stands still, and no torque acts on
+    /// the float.
+    fn rising(&self, signal: &[f64], physics: &Physics, on_stop: bool) -> Vec<f64> {
         let n = self.command.len();
         let mut rising = vec![0.0; n + 1];
         for (state, share) in signal.iter().enumerate().take(INTEGRATOR + 1).skip(SECTION) {
@@ -101,6 +110,11 @@ impl Chain {
             rising[n] += share * self.drive[(state, 2)];
         }
         rising[THETA_RATE] += signal[THETA];
+        if !on_stop {
+            let [by_gimbal, by_float] = float_slopes(physics);
+            rising[PHI_RATE] += by_gimbal * signal[THETA_RATE];
+            rising[THETA_RATE] += by_float * signal[THETA_RATE];
+        }
         rising
     }
 
@@ -160,11 +174,37 @@ impl Chain {
     }
 
     fn gyro(&mut self, physics: &Physics) {
-        let gyro = &physics.config.gyro;
+        let [by_gimbal, by_float] = float_slopes(physics);
         self.slope[(THETA, THETA_RATE)] = 1.0;
-        self.slope[(THETA_RATE, PHI_RATE)] = gyro.angular_momentum_nm_s / gyro.float_inertia_kg_m2;
-        self.slope[(THETA_RATE, THETA_RATE)] = -gyro.damping_nm_s_per_rad / gyro.float_inertia_kg_m2;
-        self.drive[(THETA_RATE, 1)] = 1.0 / gyro.float_inertia_kg_m2;
+        self.slope[(THETA_RATE, PHI_RATE)] = by_gimbal;
+        self.slope[(THETA_RATE, THETA_RATE)] = by_float;
+        self.drive[(THETA_RATE, 1)] = 1.0 / physics.config.gyro.float_inertia_kg_m2;
+    }
+}
+
+/// theta'' after phi' and after theta'.
+fn float_slopes(physics: &Physics) -> [f64; 2] {
+    let gyro = &physics.config.gyro;
+    [gyro.angular_momentum_nm_s, -gyro.damping_nm_s_per_rad].map(|torque| torque / gyro.float_inertia_kg_m2)
+}
+
+/// The motor between a lag and a pure delay.
+struct Motor {
+    /// T + b [s].
+    lag_s: f64,
+    /// b [s].
+    ahead_s: f64,
+    /// c [s2].
+    bend_s2: f64,
+}
+
+impl Motor {
+    fn new(physics: &Physics) -> Self {
+        let delay_s = physics.config.servo.motor_lag_s;
+        let lag = 1.0 - physics.pure_delay;
+        let ahead = -2.0 / 3.0 * (1.0 - lag.powi(3)) / (1.0 + lag * lag);
+        let bend = -ahead - 0.5 * (1.0 - lag * lag);
+        Self { lag_s: delay_s * (1.0 + ahead), ahead_s: delay_s * ahead, bend_s2: delay_s * delay_s * bend }
     }
 }
 
@@ -172,7 +212,7 @@ impl Chain {
 mod tests {
     use nalgebra::{Complex, DMatrix, DVector};
 
-    use super::{Chain, INTEGRATOR, SECTION, THETA, THETA_RATE, TORQUE};
+    use super::{Chain, INTEGRATOR, PHI_RATE, SECTION, THETA, THETA_RATE, TORQUE, float_slopes};
     use crate::library::platform;
     use crate::simulate::Physics;
 
@@ -185,7 +225,11 @@ mod tests {
         let left =
             DMatrix::from_fn(count, count, |row, column| if row == column { s } else { of(0.0) } - own(row, column));
         let drive = |state: usize, row: usize| of(chain.slope[(SECTION + row, state)]);
-        let right = DVector::from_fn(count, |row, _| drive(THETA, row) + s * drive(THETA_RATE, row));
+        let [by_gimbal, by_float] = float_slopes(physics);
+        let gimbal_rate = s * (s - by_float) / by_gimbal;
+        let right = DVector::from_fn(count, |row, _| {
+            drive(THETA, row) + s * drive(THETA_RATE, row) + gimbal_rate * drive(PHI_RATE, row)
+        });
         left.lu().solve(&right).expect("regular")[TORQUE - SECTION]
     }
 
@@ -197,16 +241,18 @@ mod tests {
         for frequency_hz in [0.3, 20.0, 84.0, 300.0] {
             let s = Complex::new(0.0, std::f64::consts::TAU * frequency_hz);
             let lag = response(&physics, s);
-            for share in [0.25, 1.0, -0.25] {
+            for share in [0.5, 0.125, -0.125] {
                 let between = response(&Physics { pure_delay: share, ..physics.clone() }, s);
-                let ahead_s = -0.5 * share * lag_s;
-                let motor = (1.0 + s * ahead_s) / (1.0 + s * (lag_s + ahead_s));
-                let right = lag * (1.0 + s * lag_s) * motor;
-                assert!((between / right - 1.0).norm() < 1e-9, "{share} at {frequency_hz} Hz: {between} and {right}");
+                let right = lag * (1.0 + s * lag_s) * (-share * lag_s * s).exp() / (1.0 + (1.0 - share) * lag_s * s);
+                let fourth = (s.norm() * lag_s).powi(4).min(2.0);
+                assert!(
+                    (between / right - 1.0).norm() < 0.1 * fourth,
+                    "{share} at {frequency_hz} Hz: {between} and {right}"
+                );
             }
             let pure = response(&Physics { pure_delay: 1.0, ..physics.clone() }, s);
             let delayed = lag * (1.0 + s * lag_s) * (-s * lag_s).exp();
-            assert!((pure / delayed - 1.0).norm() < 0.3 * (s.norm() * lag_s).powi(3).min(2.0), "{frequency_hz} Hz");
+            assert!((pure / delayed - 1.0).norm() < 0.1 * (s.norm() * lag_s).powi(4).min(20.0), "{frequency_hz} Hz");
         }
     }
 }

@@ -25,6 +25,8 @@ pub(super) struct Steps<'a, const N: usize> {
     held: OnceCell<[Step<N, 1>; 3]>,
     /// The row that gives the motor's command.
     pub(super) command: [f64; N],
+    /// T_m jumps by this where theta' does [N m s/rad].
+    pub(super) jump: f64,
 }
 
 impl<'a, const N: usize> Steps<'a, N> {
@@ -34,7 +36,7 @@ impl<'a, const N: usize> Steps<'a, N> {
         let chain = Chain::new(physics, false);
         let command = std::array::from_fn(|state| chain.command[state]);
         let free = Self::divided(&chain, period_s / f64::from(full_steps));
-        Self { physics, period_s, full_steps, free, held: OnceCell::new(), command }
+        Self { physics, period_s, full_steps, free, held: OnceCell::new(), command, jump: chain.jump }
     }
 
     /// The same with the float on a stop.

@@ -25,6 +25,9 @@ pub(super) struct Law<'a, const L: usize> {
     pub(super) slip_radps: Lanes<L>,
     corner: [Corner; L],
     is_round: bool,
+    follows_rad: Lanes<L>,
+    /// Whether the clamp follows the rate over a displacement, in all lanes.
+    pub(super) follows: bool,
     pub(super) stop_rad: Lanes<L>,
     unbalance_kg_m: [Lanes<L>; 2],
     constant_nm: Lanes<L>,
@@ -64,6 +67,8 @@ impl<'a, const L: usize> Law<'a, L> {
             slip_radps: of(&|own| own.config.bearing.slip_rate_radps),
             corner: physics.map(|own| own.friction.corner),
             is_round: any(&|own| own.friction.corner.is_round()),
+            follows_rad: of(&|own| own.friction.follows_rad),
+            follows: physics[0].friction.follows_rad.abs() > 0.0,
             stop_rad: of(&Physics::stop_rad),
             unbalance_kg_m: [of(&|own| own.config.unbalance.x_kg_m), of(&|own| own.config.unbalance.y_kg_m)],
             constant_nm: of(&|own| own.constant_nm),

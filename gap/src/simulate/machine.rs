@@ -265,8 +265,14 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let brake = step.end[0][PHI_RATE];
         let rate = to.rate - x[PHI_RATE];
         let level = law.level(to, ahead);
+        let mut of_clamp = Lanes::all(1.0);
         let [w, zeta, share] = if law.presliding {
             self.build_up(state, [rate, brake, level], self.step_s(division))
+        } else if law.follows && division != FULL_STEP {
+            let [w, zeta, share, own] =
+                law.following([state.zeta, state.w], [rate, brake, level], self.step_s(division));
+            of_clamp = own;
+            [w, zeta, share]
         } else {
             let (w, share) = law.clamp(rate, brake, level);
             [w, share, share]
@@ -274,12 +280,15 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let friction = law.built_up(level, w) * share;
         add(&mut x, &step.end[0], friction);
         if !law.presliding && law.crosses(state.w, w) {
+            let clamped =
+                |own: Lanes<L>, w: Lanes<L>| if law.follows { law.built_up(level, w) * law.share(w) } else { own };
+            let (from, to) = (clamped(state.friction, state.w), clamped(friction, w));
             let mut off = [Lanes::all(0.0); 2];
             for lane in 0..L {
-                let (before, after) = ([state.w[lane], state.friction[lane]], [w[lane], friction[lane]]);
+                let (before, after) = ([state.w[lane], from[lane]], [w[lane], to[lane]]);
                 if let Some(mean) = law.mean_nm(lane, level[lane], before, after) {
-                    off[0][lane] = mean - state.friction[lane];
-                    off[1][lane] = mean - friction[lane];
+                    off[0][lane] = of_clamp[lane] * (mean - from[lane]);
+                    off[1][lane] = of_clamp[lane] * (mean - to[lane]);
                 }
             }
             add(&mut x, &step.start[0], off[0]);
@@ -354,6 +363,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
                 state.stop[lane] = if theta > 0.0 { 1 } else { -1 };
                 state.x[THETA][lane] = stop_rad * f64::from(state.stop[lane]);
                 state.x[THETA_RATE][lane] = 0.0;
+                state.x[TORQUE][lane] -= self.steps[lane].jump * rate;
             }
         } else if (gyro.angular_momentum_nm_s * state.x[PHI_RATE][lane] + state.u[1][lane]) * stop < 0.0 {
             state.stop[lane] = 0;

@@ -29,7 +29,7 @@ pub struct Physics {
     pub ripple: Option<Ripple>,
     /// Pure delay of the motor torque [s].
     pub delay_s: f64,
-    /// Whether the motor's own delay is a lag, 0, or a pure delay, 1.
+    /// Share of the motor's own delay that is pure; the rest is a lag.
     pub pure_delay: f64,
     /// Clamp of the motor torque [N m].
     pub limit_nm: Option<f64>,
@@ -60,6 +60,8 @@ pub struct Friction {
     pub asymmetry: f64,
     /// How round the clamp's corners are.
     pub corner: Corner,
+    /// Displacement over which the clamp's share follows the rate, at the slip rate and above it [rad].
+    pub follows_rad: f64,
     /// `b w` [N m s/rad].
     pub viscous_nm_s: f64,
     /// `b w |w|` [N m s2/rad2].
@@ -185,6 +187,7 @@ impl Default for Friction {
             per_g: 0.0,
             asymmetry: 0.0,
             corner: Corner::default(),
+            follows_rad: 0.0,
             viscous_nm_s: 0.0,
             quadratic_nm_s2: 0.0,
             stribeck: None,
@@ -238,6 +241,19 @@ impl Physics {
             appendage: None,
             measurement: Measurement::default(),
         }
+    }
+}
+
+impl Physics {
+    /// The loop, without what disturbs it and without what bends it.
+    #[must_use]
+    pub(crate) fn loop_alone(&self) -> Self {
+        let mut config = self.config;
+        config.bearing.count = 0;
+        config.unbalance.x_kg_m = 0.0;
+        config.unbalance.y_kg_m = 0.0;
+        let Self { delay_s, pure_delay, appendage, .. } = *self;
+        Self { delay_s, pure_delay, appendage, ..Self::nominal(&config) }
     }
 }
 

@@ -127,6 +127,7 @@ pub fn predict_each<T: Send>(
 struct Kind {
     states: usize,
     presliding: bool,
+    follows: bool,
     no_bearing: bool,
     rows: usize,
     /// What is slower lane by lane: shapes of friction, cable or ripple, a motor with corners.
@@ -139,6 +140,7 @@ impl Kind {
         Self {
             states: Chain::states(physics),
             presliding: physics.friction.presliding_rad > 0.0,
+            follows: physics.friction.follows_rad.abs() > 0.0,
             no_bearing: physics.config.bearing.count == 0,
             rows: variant.rows,
             slower: [
@@ -275,6 +277,10 @@ mod tests {
             let mut curved = base.clone();
             curved.curved = share;
             all.push(curved);
+            let mut following = base.clone();
+            following.friction.follows_rad = 1e-6 * share;
+            following.pure_delay = share;
+            all.push(following);
             let mut stops = base.clone();
             stops.friction.load_factor += share;
             apply("cable_hysteresis", &[6e-4, 0.05, 1.0], &mut stops);
@@ -299,6 +305,47 @@ mod tests {
         for (index, (physics, own)) in all.iter().zip(&together).enumerate() {
             assert_eq!(bits(own), bits(&predict(physics, &inputs, &begin, usize::MAX)), "variant {index}");
         }
+    }
+
+    /// `z' = (clamp(w / w_s) - z) / tau` through a turn at an even rate, with tau = d / w_s within the slip rate.
+    #[test]
+    fn closed_form_a_clamp_that_follows_is_late_by_its_displacement_over_the_slip_rate() {
+        let (rows, follows_rad, rise) = (400, 1e-6, 0.2);
+        let mut base = platform(&gimbal_model_file::ModelFile::default());
+        let slip_radps = base.config.bearing.slip_rate_radps;
+        let zero = || vec![0.0; rows];
+        let rate = |k: usize| rise * (k as f64 - 200.0) * 1e-3;
+        let mut inputs = Inputs {
+            period_s: 1e-3,
+            accel_mps2: [zero(), zero(), zero()],
+            rate_radps: (0..rows).map(rate).collect(),
+            ..Inputs::default()
+        };
+        inputs.complete(&base.config.bearing, 0.0);
+        // a gimbal that hardly moves
+        base.config.servo.gimbal_inertia_kg_m2 *= 1e6;
+        let friction = |follows_rad: f64| {
+            let physics =
+                Physics { friction: crate::simulate::Friction { follows_rad, ..base.friction }, ..base.clone() };
+            predict(&physics, &inputs, &Begin::at(&physics, &inputs, 0.0, None), rows).friction_nm
+        };
+        let [clamp, late, ahead] = [0.0, follows_rad, -follows_rad].map(friction);
+        let late_s = follows_rad / slip_radps;
+        for k in 194..=206 {
+            // within the clamp: on a line, but for what is left of its begin
+            let since_s = (rate(k) + slip_radps) / rise;
+            let passed = since_s > 0.0 && rate(k) < slip_radps;
+            let share = if passed {
+                late_s * rise / slip_radps * (1.0 - (-since_s / late_s).exp())
+            } else {
+                continue;
+            };
+            let level = clamp[300];
+            let lag = (clamp[k] - late[k]) / level;
+            assert!((lag - share).abs() < 0.03 * share.max(0.01), "row {k}: {lag} and {share}");
+            assert!((ahead[k] - clamp[k] - lag * level).abs() < 1e-3 * level, "row {k}: {}", ahead[k]);
+        }
+        assert!((clamp[300] - late[300]).abs() < 1e-6 * clamp[300]);
     }
 
     #[test]

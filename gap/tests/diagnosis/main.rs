@@ -313,10 +313,10 @@ fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
     assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
 }
 
-/// A delay of the same length, a tenth of it pure.
+/// A delay of the same length, half of it pure.
 #[test]
 fn a_motor_whose_delay_is_pure_in_part_is_no_gap() {
-    let log = log_with(Excitation::Manoeuvre, &[("loop_delay", vec![1e-4]), ("motor_lag", vec![-0.1])]);
+    let log = log_with(Excitation::Manoeuvre, &[("loop_delay", vec![5e-4]), ("motor_lag", vec![-0.5])]);
     let diagnosis = diagnose(&log, &ModelFile::default());
     assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:?}", names(&diagnosis));
     let mut known = ModelFile::default();

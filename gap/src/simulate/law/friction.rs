@@ -69,6 +69,24 @@ impl<const L: usize> Law<'_, L> {
         (w, self.share(w))
     }
 
+    /// The same with a share z that follows the clamp's over a displacement d, `d z' = max(|w|, w_s) (share(w) - z)`, implicit,
+    /// from that at the step's begin and the rate there: w, z, share of the friction, and how much of the clamp's is in that.
+    /// With a displacement below zero, which no bearing has and a fit may try, it is as far ahead.
+    #[inline(always)]
+    pub(in crate::simulate) fn following(
+        &self,
+        [from, before]: [Lanes<L>; 2],
+        [rate, brake, level]: [Lanes<L>; 3],
+        step_s: f64,
+    ) -> [Lanes<L>; 4] {
+        let moved = before.abs().above(self.slip_radps, before.abs(), self.slip_radps) * step_s;
+        let new = 1.0 / (1.0 + self.follows_rad.abs() / moved);
+        let late = self.follows_rad.signum();
+        let (own, kept) = (1.0 + late * (new - 1.0), late * (1.0 - new) * from);
+        let (w, clamped) = self.clamp(rate - brake * self.built_up(level, before) * kept, brake, level * own);
+        [w, (1.0 - new) * from + new * clamped, kept + own * clamped, own]
+    }
+
     /// What the corners have more than a clamp, at a rate over the slip rate.
     #[inline(always)]
     fn rounding(&self, x: Lanes<L>) -> Lanes<L> {
