@@ -44,7 +44,7 @@ pub(crate) struct Chain {
     pub(crate) slope: DMatrix<f64>,
     pub(crate) drive: DMatrix<f64>,
     pub(crate) command: Vec<f64>,
-    /// T_m jumps by this where theta' does [N m s/rad].
+    /// `T_m` jumps by this where theta' does [N m s/rad].
     pub(crate) jump: f64,
 }
 

@@ -25,7 +25,7 @@ pub(super) struct Steps<'a, const N: usize> {
     held: OnceCell<[Step<N, 1>; 3]>,
     /// The row that gives the motor's command.
     pub(super) command: [f64; N],
-    /// T_m jumps by this where theta' does [N m s/rad].
+    /// `T_m` jumps by this where theta' does [N m s/rad].
     pub(super) jump: f64,
 }
 

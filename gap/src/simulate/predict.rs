@@ -307,7 +307,7 @@ mod tests {
         }
     }
 
-    /// `z' = (clamp(w / w_s) - z) / tau` through a turn at an even rate, with tau = d / w_s within the slip rate.
+    /// `z' = (clamp(w / w_s) - z) / tau` through a turn at an even rate, with `tau = d / w_s` within the slip rate.
     #[test]
     fn closed_form_a_clamp_that_follows_is_late_by_its_displacement_over_the_slip_rate() {
         let (rows, follows_rad, rise) = (400, 1e-6, 0.2);
