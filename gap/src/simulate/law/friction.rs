@@ -216,3 +216,43 @@ impl<const L: usize> Law<'_, L> {
         if self.no_bearing { Lanes::all(0.0) } else { now.bulge * self.load_factor * zeta }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::library::platform;
+    use crate::simulate::{Begin, Friction, Inputs, Physics, predict};
+
+    /// `z' = (clamp(w / w_s) - z) / tau` through a turn at an even rate, with `tau = d / w_s` within the slip rate.
+    #[test]
+    fn closed_form_a_clamp_that_follows_is_late_by_its_displacement_over_the_slip_rate() {
+        let (rows, follows_rad, rise) = (400, 1e-6, 0.2);
+        let mut base = platform(&gimbal_model_file::ModelFile::default());
+        let slip_radps = base.config.bearing.slip_rate_radps;
+        let zero = || vec![0.0; rows];
+        let rate = |k: usize| rise * (k as f64 - 200.0) * 1e-3;
+        let mut inputs = Inputs {
+            period_s: 1e-3,
+            accel_mps2: [zero(), zero(), zero()],
+            rate_radps: (0..rows).map(rate).collect(),
+            ..Inputs::default()
+        };
+        inputs.complete(&base.config.bearing, 0.0);
+        // a gimbal that hardly moves
+        base.config.servo.gimbal_inertia_kg_m2 *= 1e6;
+        let friction = |follows_rad: f64| {
+            let physics = Physics { friction: Friction { follows_rad, ..base.friction }, ..base.clone() };
+            predict(&physics, &inputs, &Begin::at(&physics, &inputs, 0.0, None), rows).friction_nm
+        };
+        let [clamp, late, ahead] = [0.0, follows_rad, -follows_rad].map(friction);
+        let (late_s, level_nm) = (follows_rad / slip_radps, clamp[300]);
+        for k in (0..rows).filter(|&k| rate(k).abs() < slip_radps) {
+            // on a line, but for what is left of its begin
+            let since_s = (rate(k) + slip_radps) / rise;
+            let share = late_s * rise / slip_radps * (1.0 - (-since_s / late_s).exp());
+            let lag = (clamp[k] - late[k]) / level_nm;
+            assert!((lag - share).abs() < 3e-3, "row {k}: {lag} and {share}");
+            assert!((ahead[k] - clamp[k] - lag * level_nm).abs() < 1e-3 * level_nm, "row {k}: {}", ahead[k]);
+        }
+        assert!((clamp[300] - late[300]).abs() < 1e-6 * clamp[300]);
+    }
+}
