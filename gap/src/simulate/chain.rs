@@ -95,11 +95,14 @@ impl Chain {
         }
         command[TORQUE] -= 1.0;
         self.set(TORQUE, &command, 1.0 / motor.lag_s);
+        if !on_stop {
+            self.drive[(TORQUE, 1)] = self.jump / physics.config.gyro.float_inertia_kg_m2;
+        }
         self.command[TORQUE] = 1.0;
     }
 
-    /// How fast a signal of the servo rises, as a row like its own; the pick-off's input stands still, and no torque acts on
-    /// the float.
+    /// How fast a signal of the servo rises, as a row like its own; the pick-off's input stands still, and a torque on
+    /// the float is not in it.
     fn rising(&self, signal: &[f64], physics: &Physics, on_stop: bool) -> Vec<f64> {
         let n = self.command.len();
         let mut rising = vec![0.0; n + 1];
