@@ -280,9 +280,11 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let friction = law.built_up(level, w) * share;
         add(&mut x, &step.end[0], friction);
         if !law.presliding && law.crosses(state.w, w) {
-            let clamped =
-                |own: Lanes<L>, w: Lanes<L>| if law.follows { law.built_up(level, w) * law.share(w) } else { own };
-            let (from, to) = (clamped(state.friction, state.w), clamped(friction, w));
+            // what a corner's mean is the mean of: the clamp by itself
+            let clamped = |own: Lanes<L>, w: Lanes<L>, share: Lanes<L>| {
+                if law.follows { own + law.built_up(level, w) * (law.share(w) - share) } else { own }
+            };
+            let (from, to) = (clamped(state.friction, state.w, state.zeta), clamped(friction, w, share));
             let mut off = [Lanes::all(0.0); 2];
             for lane in 0..L {
                 let (before, after) = ([state.w[lane], from[lane]], [w[lane], to[lane]]);

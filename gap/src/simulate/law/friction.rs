@@ -255,4 +255,28 @@ mod tests {
         }
         assert!((clamp[300] - late[300]).abs() < 1e-6 * clamp[300]);
     }
+
+    /// Also where the bearing goes from one viscous law to the other, as fast as a rocket rolls.
+    #[test]
+    fn contract_a_clamp_that_follows_over_next_to_nothing_is_the_clamp() {
+        let rows = 3000;
+        let base = platform(&gimbal_model_file::ModelFile::default());
+        let wave =
+            |size: f64, hz: f64| (0..rows).map(move |k| size * (std::f64::consts::TAU * hz * k as f64 * 1e-3).sin());
+        let mut inputs = Inputs {
+            period_s: 1e-3,
+            accel_mps2: [wave(3.0, 0.7), wave(5.0, 1.1), wave(9.0, 0.4)].map(Iterator::collect),
+            rate_radps: wave(18.0, 0.9).zip(wave(0.5, 7.0)).map(|(a, b)| a + b).collect(),
+            ..Inputs::default()
+        };
+        inputs.complete(&base.config.bearing, 0.0);
+        let angle_rad = |follows_rad: f64| {
+            let physics = Physics { friction: Friction { follows_rad, ..base.friction }, ..base.clone() };
+            predict(&physics, &inputs, &Begin::at(&physics, &inputs, 0.0, None), rows).gyro_angle_rad
+        };
+        let (clamp, follows) = (angle_rad(0.0), angle_rad(1e-13));
+        let peak = clamp.iter().fold(0.0, |peak: f64, own| peak.max(own.abs()));
+        let apart = clamp.iter().zip(&follows).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        assert!(apart < 1e-5 * peak, "{apart:e} of {peak:e}");
+    }
 }
