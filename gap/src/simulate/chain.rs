@@ -197,7 +197,7 @@ struct Motor {
     lag_s: f64,
     /// b [s].
     ahead_s: f64,
-    /// c [s2].
+    /// c, in s2.
     bend_s2: f64,
 }
 
