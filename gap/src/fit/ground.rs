@@ -66,7 +66,7 @@ pub(crate) struct Known {
 }
 
 /// What noise looks like behind a loop.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 struct Behind {
     impulse: Impulse,
     shapes: Arc<Vec<Shapes>>,
@@ -171,7 +171,9 @@ impl<'a> Ground<'a> {
                 (scaled(noise, &self.over_noise), scaled(gap, &self.over_noise), Some(platform))
             }
         };
-        let behind = platform.as_ref().map_or_else(|| self.behind.clone(), |own| self.behind(&own.physics));
+        let as_fitted =
+            platform.as_ref().map(|own| Behind::new(&own.physics, self.record, &self.over_noise, &self.plans));
+        let behind = as_fitted.as_ref().unwrap_or(&self.behind);
         let whitener = self.whitener(&noise, platform.as_ref(), &behind.shapes);
         let impulse = &behind.impulse;
         let path = Path::new(&whitener, &impulse.channels, impulse.torque_nm, self.record.inputs.period_s);
@@ -196,7 +198,7 @@ impl<'a> Ground<'a> {
             whitened: Vec::new(),
             gram: nalgebra::DMatrix::zeros(0, 0),
             impulse_nm: impulse.torque_nm,
-            shapes: behind.shapes,
+            shapes: behind.shapes.clone(),
             whitener,
             path,
             turns_mostly: mostly(&self.turns),
@@ -232,10 +234,6 @@ impl<'a> Ground<'a> {
     fn draft(&self) -> Draft<'_> {
         let (base, begin, nominal) = (&self.base, &self.begin, &self.nominal);
         Draft { record: self.record, base, begin, nominal, over_noise: &self.over_noise }
-    }
-
-    fn behind(&self, physics: &Physics) -> Behind {
-        Behind::new(physics, self.record, &self.over_noise, &self.plans)
     }
 
     fn whitener(&self, rest: &Signals, platform: Option<&Fitted>, shapes: &[Shapes]) -> Whitener {

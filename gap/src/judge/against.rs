@@ -37,20 +37,19 @@ pub(super) fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: 
     let of = |(place, &index): (usize, &usize)| {
         let candidate = &problem.candidates[index];
         let (values, errors) = (&fit.values[place], &fit.errors[place]);
-        let traded = traded(problem, fit, candidate.effect);
         let idle = if fit.is_idle(place) && !helps(search, fit, place) { NEVER } else { 0.0 };
-        idle + traded
-            + if candidate.effect == "cable_hysteresis" && fit.effects.contains(&"presliding") {
-                beside_presliding(at_a_bound(candidate.effect, values, errors))
-            } else if candidate.effect == "presliding" && values[0] < shortest_rad {
-                NEVER
-            } else if candidate.releases.is_empty() {
-                at_a_bound(candidate.effect, values, errors)
-            } else if beyond(problem, tolerance, candidate.effect, values, errors) {
-                0.0
-            } else {
-                NEVER
-            }
+        let values = if candidate.effect == "cable_hysteresis" && fit.effects.contains(&"presliding") {
+            beside_presliding(at_a_bound(candidate.effect, values, errors))
+        } else if candidate.effect == "presliding" && values[0] < shortest_rad {
+            NEVER
+        } else if candidate.releases.is_empty() {
+            at_a_bound(candidate.effect, values, errors)
+        } else if beyond(problem, tolerance, candidate.effect, values, errors) {
+            0.0
+        } else {
+            NEVER
+        };
+        idle + traded(problem, fit, candidate.effect) + values
     };
     fit.set.0.iter().enumerate().map(of).sum()
 }

@@ -68,7 +68,7 @@ impl<'a, const L: usize> Law<'a, L> {
             corner: physics.map(|own| own.friction.corner),
             is_round: any(&|own| own.friction.corner.is_round()),
             follows_rad: of(&|own| own.friction.follows_rad),
-            follows: physics[0].friction.follows_rad.abs() > 0.0,
+            follows: physics[0].friction.follows(),
             stop_rad: of(&Physics::stop_rad),
             unbalance_kg_m: [of(&|own| own.config.unbalance.x_kg_m), of(&|own| own.config.unbalance.y_kg_m)],
             constant_nm: of(&|own| own.constant_nm),

@@ -3,10 +3,12 @@
 //! All go in the same steps as long as nothing turns around, or turns around alike; where they part, each goes its own
 //! way for that row.
 
+mod step;
+
 use std::cell::OnceCell;
 
-use super::chain::{FULL, PHI, PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
-use super::discrete::{DIVISIONS, Step, Steps, add};
+use super::chain::{FULL, PHI, PHI_RATE, PLAIN, THETA, TORQUE};
+use super::discrete::{DIVISIONS, Step, Steps};
 use super::lanes::Lanes;
 use super::law::Law;
 use super::now::Now;
@@ -216,159 +218,6 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             SLOW_STEPS
         } else {
             FULL_STEP
-        }
-    }
-
-    /// One step; where some are on a stop and others are not, each by itself.
-    #[inline(always)]
-    fn step(&self, state: &mut Running<N, L>, to: &Now<L>, division: usize) {
-        let stop = state.stop[0];
-        let mut apart = false;
-        for lane in 0..L {
-            apart |= state.stop[lane] != stop;
-        }
-        if L > 1 && apart {
-            for (lane, alone) in self.alone.iter().enumerate() {
-                let mut one = state.of(lane);
-                alone.step_by(&mut one, &to.of(lane), division);
-                state.put(lane, &one);
-            }
-        } else {
-            self.step_by(state, to, division);
-        }
-    }
-
-    #[inline(always)]
-    fn step_by(&self, state: &mut Running<N, L>, to: &Now<L>, division: usize) {
-        let step = if state.stop[0] == 0 { &self.free[division] } else { &self.held()[division] };
-        let law = &self.law;
-        let mut x = step.free(&state.x, &state.u);
-        let mut guess = x;
-        add(&mut guess, &step.end[0], state.u[0]);
-        let ahead = to.rate - guess[PHI_RATE];
-        let mut hysteresis = state.hysteresis;
-        if law.has_hysteresis {
-            let turned_rad = 0.5 * self.step_s(division) * (state.w + ahead);
-            hysteresis = law.hysteresis_after(hysteresis, turned_rad, &mut state.stops);
-        }
-        let others = law.others(to, &guess, hysteresis, |x| self.command_nm(x));
-        let float_nm = law.float_nm(to);
-        add(&mut x, &step.end[0], others);
-        if float_nm.any(float_nm, |own, _| own != 0.0) {
-            add(&mut x, &step.end[1], float_nm);
-        }
-        let mut seen = Lanes::all(0.0);
-        if law.quantised {
-            seen = law.seen(guess[THETA]) - guess[THETA];
-            add(&mut x, &step.end[2], seen);
-        }
-        let brake = step.end[0][PHI_RATE];
-        let rate = to.rate - x[PHI_RATE];
-        let level = law.level(to, ahead);
-        let mut of_clamp = Lanes::all(1.0);
-        let [w, zeta, share] = if law.presliding {
-            self.build_up(state, [rate, brake, level], self.step_s(division))
-        } else if law.follows && division != FULL_STEP {
-            let [w, zeta, share, own] =
-                law.following([state.zeta, state.w], [rate, brake, level], self.step_s(division));
-            of_clamp = own;
-            [w, zeta, share]
-        } else {
-            let (w, share) = law.clamp(rate, brake, level);
-            [w, share, share]
-        };
-        let friction = law.built_up(level, w) * share;
-        add(&mut x, &step.end[0], friction);
-        if !law.presliding && law.crosses(state.w, w) {
-            // what a corner's mean is the mean of: the clamp by itself
-            let clamped = |own: Lanes<L>, w: Lanes<L>, share: Lanes<L>| {
-                if law.follows { own + law.built_up(level, w) * (law.share(w) - share) } else { own }
-            };
-            let (from, to) = (clamped(state.friction, state.w, state.zeta), clamped(friction, w, share));
-            let mut off = [Lanes::all(0.0); 2];
-            for lane in 0..L {
-                let (before, after) = ([state.w[lane], from[lane]], [w[lane], to[lane]]);
-                if let Some(mean) = law.mean_nm(lane, level[lane], before, after) {
-                    off[0][lane] = of_clamp[lane] * (mean - from[lane]);
-                    off[1][lane] = of_clamp[lane] * (mean - to[lane]);
-                }
-            }
-            add(&mut x, &step.start[0], off[0]);
-            add(&mut x, &step.end[0], off[1]);
-        }
-        let bulge = law.bulge_nm(to, zeta);
-        add(&mut x, &step.start[0], bulge);
-        add(&mut x, &step.end[0], bulge);
-        state.x = x;
-        state.u = [others + friction, float_nm, seen];
-        state.w = to.rate - x[PHI_RATE];
-        state.friction = friction;
-        state.zeta = zeta;
-        state.hysteresis = hysteresis;
-    }
-
-    /// Friction that builds up: w that it leaves, share built up, share of all friction.
-    fn build_up(&self, state: &mut Running<N, L>, [rate, brake, level]: [Lanes<L>; 3], step_s: f64) -> [Lanes<L>; 3] {
-        let mut built = [Lanes::all(0.0); 3];
-        for lane in 0..L {
-            let onto = [rate[lane], brake[lane], level[lane], step_s];
-            let of_lane = if self.law.is_sprung(lane) {
-                let from = state.sprung.map(|force| force[lane]);
-                let (of_lane, forces) = self.law.sprung(lane, state.w[lane], from, onto);
-                state.sprung.iter_mut().zip(forces).for_each(|(sprung, force)| sprung[lane] = force);
-                of_lane
-            } else {
-                self.law.build_up(lane, [state.w[lane], state.zeta[lane]], onto)
-            };
-            built.iter_mut().zip(of_lane).for_each(|(built, value)| built[lane] = value);
-        }
-        built
-    }
-
-    #[inline(always)]
-    fn step_s(&self, division: usize) -> f64 {
-        self.inputs.period_s / f64::from(self.full_steps * DIVISIONS[division])
-    }
-
-    #[inline(always)]
-    fn command_nm(&self, x: &[Lanes<L>; N]) -> Lanes<L> {
-        if N == PLAIN {
-            return x[TORQUE];
-        }
-        let mut command = Lanes::all(0.0);
-        for state in 0..N {
-            command += self.command[state] * x[state];
-        }
-        command
-    }
-
-    /// The float meets a stop, or leaves it.
-    #[inline(always)]
-    fn contact(&self, state: &mut Running<N, L>) {
-        let mut any = false;
-        for lane in 0..L {
-            any |= state.stop[lane] != 0 || state.x[THETA][lane].abs() >= self.law.stop_rad[lane];
-        }
-        if any {
-            (0..L).for_each(|lane| self.contact_of(state, lane));
-        }
-    }
-
-    #[cold]
-    fn contact_of(&self, state: &mut Running<N, L>, lane: usize) {
-        let physics = self.law.physics[lane];
-        let (gyro, stop_rad) = (&physics.config.gyro, physics.stop_rad());
-        let (theta, rate) = (state.x[THETA][lane], state.x[THETA_RATE][lane]);
-        let stop = f64::from(state.stop[lane]);
-        if state.stop[lane] == 0 {
-            if theta.abs() >= stop_rad && theta * rate > 0.0 {
-                state.stop[lane] = if theta > 0.0 { 1 } else { -1 };
-                state.x[THETA][lane] = stop_rad * f64::from(state.stop[lane]);
-                state.x[THETA_RATE][lane] = 0.0;
-                state.x[TORQUE][lane] -= self.steps[lane].jump * rate;
-            }
-        } else if (gyro.angular_momentum_nm_s * state.x[PHI_RATE][lane] + state.u[1][lane]) * stop < 0.0 {
-            state.stop[lane] = 0;
         }
     }
 }

@@ -17,6 +17,7 @@ mod machine;
 mod now;
 mod physics;
 mod predict;
+mod prediction;
 mod running;
 mod sprung;
 
@@ -27,4 +28,5 @@ pub use corner::Corner;
 pub(crate) use inputs::turned;
 pub use inputs::{Curve, Inputs};
 pub use physics::{BuildUp, Fall, Friction, Hysteresis, Loop, Measurement, Physics, Ripple, Stribeck};
-pub use predict::{Prediction, Push, Variant, predict, predict_each};
+pub use predict::{Push, Variant, predict, predict_each};
+pub use prediction::Prediction;

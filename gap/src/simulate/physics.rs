@@ -76,6 +76,13 @@ pub struct Friction {
     pub drift: Option<[f64; 2]>,
 }
 
+impl Friction {
+    /// Whether the clamp's share follows the rate over a displacement.
+    pub(super) fn follows(&self) -> bool {
+        self.follows_rad.abs() > 0.0
+    }
+}
+
 /// Excess of the friction at low rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stribeck {
@@ -242,9 +249,7 @@ impl Physics {
             measurement: Measurement::default(),
         }
     }
-}
 
-impl Physics {
     /// The loop, without what disturbs it and without what bends it.
     #[must_use]
     pub(crate) fn loop_alone(&self) -> Self {

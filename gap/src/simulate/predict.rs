@@ -5,64 +5,11 @@ use rayon::prelude::*;
 
 use super::chain::{Chain, FULL, PLAIN};
 use super::discrete::Steps;
-use super::inputs::later;
 use super::machine::Machine;
-use super::{Begin, Inputs, Physics};
+use super::{Begin, Inputs, Physics, Prediction};
 
 /// Predictions that go side by side.
 const SIDE_BY_SIDE: usize = 4;
-
-/// What the sensors would read, and what they do not see.
-#[derive(Debug, Clone, Default)]
-pub struct Prediction {
-    /// Pick-off angle as logged [rad].
-    pub gyro_angle_rad: Vec<f64>,
-    /// Motor torque as logged [N m].
-    pub motor_torque_nm: Vec<f64>,
-    /// phi [rad].
-    pub gimbal_angle_rad: Vec<f64>,
-    /// phi' [rad/s].
-    pub gimbal_rate_radps: Vec<f64>,
-    /// Bearing friction [N m].
-    pub friction_nm: Vec<f64>,
-    /// Rows on a stop.
-    pub on_stop: Vec<bool>,
-}
-
-impl Prediction {
-    pub(super) fn zero(rows: usize) -> Self {
-        Self {
-            gyro_angle_rad: vec![0.0; rows],
-            motor_torque_nm: vec![0.0; rows],
-            gimbal_angle_rad: vec![0.0; rows],
-            gimbal_rate_radps: vec![0.0; rows],
-            friction_nm: vec![0.0; rows],
-            on_stop: vec![false; rows],
-        }
-    }
-
-    /// What the sensors make of it.
-    ///
-    /// Inputs that are logged late are outputs that are logged early. Inputs between their rows would be smoother than
-    /// in them: their noise would weigh less, and every log look like a late one.
-    fn logged(&mut self, physics: &Physics, period_s: f64) {
-        let sensors = physics.measurement;
-        if sensors.skew_s != 0.0 {
-            for output in [&mut self.gyro_angle_rad, &mut self.motor_torque_nm, &mut self.gimbal_angle_rad] {
-                *output = later(output, sensors.skew_s / period_s);
-            }
-        }
-        if sensors.torque_late_s != 0.0 {
-            self.motor_torque_nm = later(&self.motor_torque_nm, -sensors.torque_late_s / period_s);
-        }
-        for theta in &mut self.gyro_angle_rad {
-            *theta = *theta * sensors.pickoff_factor + sensors.pickoff_bias_rad;
-        }
-        for torque in &mut self.motor_torque_nm {
-            *torque = *torque * sensors.torque_factor + sensors.torque_bias_nm;
-        }
-    }
-}
 
 /// One of many predictions.
 #[derive(Debug, Clone)]
@@ -140,7 +87,7 @@ impl Kind {
         Self {
             states: Chain::states(physics),
             presliding: physics.friction.presliding_rad > 0.0,
-            follows: physics.friction.follows_rad.abs() > 0.0,
+            follows: physics.friction.follows(),
             no_bearing: physics.config.bearing.count == 0,
             rows: variant.rows,
             slower: [
@@ -197,9 +144,9 @@ impl<const N: usize, const L: usize> WithSimd for Run<'_, N, L> {
 mod tests {
     use std::f64::consts::TAU;
 
-    use super::{Prediction, Push, Variant, predict, predict_each};
+    use super::{Push, Variant, predict, predict_each};
     use crate::library::{apply, platform};
-    use crate::simulate::{Begin, Inputs, Physics};
+    use crate::simulate::{Begin, Inputs, Physics, Prediction};
 
     fn swayed(rows: usize) -> Inputs {
         shaken(rows, 1e-3, 0.0, 0.0)

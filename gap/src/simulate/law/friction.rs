@@ -220,7 +220,12 @@ impl<const L: usize> Law<'_, L> {
 #[cfg(test)]
 mod tests {
     use crate::library::platform;
-    use crate::simulate::{Begin, Friction, Inputs, Physics, predict};
+    use crate::simulate::{Begin, Friction, Inputs, Physics, Prediction, predict};
+
+    fn following(base: &Physics, inputs: &Inputs, follows_rad: f64) -> Prediction {
+        let physics = Physics { friction: Friction { follows_rad, ..base.friction }, ..base.clone() };
+        predict(&physics, inputs, &Begin::at(&physics, inputs, 0.0, None), inputs.len())
+    }
 
     /// `z' = (clamp(w / w_s) - z) / tau` through a turn at an even rate, with `tau = d / w_s` within the slip rate.
     #[test]
@@ -239,11 +244,8 @@ mod tests {
         inputs.complete(&base.config.bearing, 0.0);
         // a gimbal that hardly moves
         base.config.servo.gimbal_inertia_kg_m2 *= 1e6;
-        let friction = |follows_rad: f64| {
-            let physics = Physics { friction: Friction { follows_rad, ..base.friction }, ..base.clone() };
-            predict(&physics, &inputs, &Begin::at(&physics, &inputs, 0.0, None), rows).friction_nm
-        };
-        let [clamp, late, ahead] = [0.0, follows_rad, -follows_rad].map(friction);
+        let [clamp, late, ahead] =
+            [0.0, follows_rad, -follows_rad].map(|own| following(&base, &inputs, own).friction_nm);
         let (late_s, level_nm) = (follows_rad / slip_radps, clamp[300]);
         for k in (0..rows).filter(|&k| rate(k).abs() < slip_radps) {
             // on a line, but for what is left of its begin
@@ -259,7 +261,7 @@ mod tests {
     /// Also where the bearing goes from one viscous law to the other, as fast as a rocket rolls.
     #[test]
     fn contract_a_clamp_that_follows_over_next_to_nothing_is_the_clamp() {
-        let rows = 3000;
+        let rows = 3000_usize;
         let base = platform(&gimbal_model_file::ModelFile::default());
         let wave =
             |size: f64, hz: f64| (0..rows).map(move |k| size * (std::f64::consts::TAU * hz * k as f64 * 1e-3).sin());
@@ -270,11 +272,7 @@ mod tests {
             ..Inputs::default()
         };
         inputs.complete(&base.config.bearing, 0.0);
-        let angle_rad = |follows_rad: f64| {
-            let physics = Physics { friction: Friction { follows_rad, ..base.friction }, ..base.clone() };
-            predict(&physics, &inputs, &Begin::at(&physics, &inputs, 0.0, None), rows).gyro_angle_rad
-        };
-        let (clamp, follows) = (angle_rad(0.0), angle_rad(1e-13));
+        let [clamp, follows] = [0.0, 1e-13].map(|own| following(&base, &inputs, own).gyro_angle_rad);
         let peak = clamp.iter().fold(0.0, |peak: f64, own| peak.max(own.abs()));
         let apart = clamp.iter().zip(&follows).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         assert!(apart < 1e-5 * peak, "{apart:e} of {peak:e}");
