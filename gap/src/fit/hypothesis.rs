@@ -11,7 +11,7 @@ use crate::library::{Nuisance, apply};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict, predict_each};
 
 /// Step of a sensitivity to a value, in its logarithm or over its size.
-const STEP: f64 = 2e-3;
+const STEP: f64 = 5e-4;
 /// Standard deviation of the logarithm of a parameter that is not a size.
 const SHAPE_SIGMA: f64 = 1.2;
 

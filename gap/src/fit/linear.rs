@@ -6,9 +6,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Problem;
 use super::draft::{STATE_STEP, remembered_rows};
-use super::hypothesis::{Hypothesis, Outcome, Point};
+use super::hypothesis::{Hypothesis, Point};
 use super::normal::{Solution, gram, narrow, products, slices, solve};
 use super::pull::Pull;
+use crate::simulate::Prediction;
 
 /// Place of the gimbal's angle at the beginning, which does not die away.
 const PHI: usize = 9;
@@ -28,7 +29,7 @@ impl<'a> Linear<'a> {
     }
 
     /// Those of the platform at a point.
-    pub(crate) fn fresh(hypothesis: &Hypothesis, point: &Point, now: &Outcome) -> Self {
+    pub(crate) fn fresh(hypothesis: &Hypothesis, point: &Point, now: &Prediction) -> Self {
         let problem = hypothesis.problem;
         let begin = point.state.len();
         let column = |place: usize| {
@@ -46,7 +47,7 @@ impl<'a> Linear<'a> {
             let rows = if place < begin.min(PHI) { remembered_rows(problem.record) } else { usize::MAX };
             (hypothesis.variant(&moved, rows), step)
         };
-        let columns = hypothesis.slopes((0..hypothesis.fixed()).map(column).collect(), &now.prediction);
+        let columns = hypothesis.slopes((0..hypothesis.fixed()).map(column).collect(), now);
         let gram = gram(&slices(&columns), 0..problem.whitener.rows());
         Self { columns: Cow::Owned(columns), gram }
     }

@@ -210,7 +210,7 @@ impl Walk<'_> {
         self.refreshes -= 1;
         self.fresh = true;
         self.gained = 0.0;
-        self.linear = Linear::fresh(self.hypothesis, &self.point, &self.outcome);
+        self.linear = Linear::fresh(self.hypothesis, &self.point, &self.outcome.prediction);
     }
 
     /// One iteration: a step that lowers the cost, with sensitivities taken anew or damping where none does. The

@@ -48,7 +48,7 @@ pub fn refit(problem: &Problem, fit: &Fit, out: &[usize]) -> Prediction {
 pub(crate) fn rebase(problem: &mut Problem, fit: &Fit) {
     let hypothesis = Hypothesis::new(problem, &fit.set, &fit.values);
     let point = fit.point(problem);
-    let linear = Linear::fresh(&hypothesis, &point, &hypothesis.evaluate(&point));
+    let linear = Linear::fresh(&hypothesis, &point, &hypothesis.predict(&point));
     let columns = linear.columns.into_owned();
     problem.replace(columns);
 }

@@ -121,7 +121,9 @@ fn transfer(physics: &Physics, hz: f64) -> Complex<f64> {
     let section = |time_s: &f64| 1.0 + time_s * s;
     let zeros: Complex<f64> = servo.lead_time_constants_s.iter().map(section).product();
     let poles: Complex<f64> = servo.lag_time_constants_s.iter().map(section).product();
-    servo.gain_nm_per_rad_s * zeros * (-physics.delay_s * s).exp() / (s * poles * section(&servo.motor_lag_s))
+    // of the motor's delay a share is pure
+    let (pure_s, lag_s) = (physics.pure_delay * servo.motor_lag_s, (1.0 - physics.pure_delay) * servo.motor_lag_s);
+    servo.gain_nm_per_rad_s * zeros * (-(physics.delay_s + pure_s) * s).exp() / (s * poles * section(&lag_s))
 }
 
 #[cfg(test)]

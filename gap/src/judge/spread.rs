@@ -5,7 +5,8 @@
 //! ```
 //!
 //! A fit leads a nominal parameter to the end of its tolerance and holds it there; it is not known any better for that, so
-//! the walls that held it are no part of P. J says nothing along scales that no log tells.
+//! the walls that held it are no part of P. J is taken where the fit stands: how far a lag, a delay and how much of it is pure
+//! stand for each other is another matter there than at the nominal model. It says nothing along scales that no log tells.
 
 use gimbal_plant::Effect;
 use nalgebra::DMatrix;
@@ -40,16 +41,16 @@ pub struct Spread {
     pub(super) own: Vec<usize>,
     pub(super) covariance: DMatrix<f64>,
     /// Standard errors of the values of each effect.
-    errors: Vec<Vec<f64>>,
+    pub errors: Vec<Vec<f64>>,
 }
 
 impl Spread {
-    /// Of a fit; none where its equations have no solution.
+    /// Of a fit; none where it has no effect, or its equations have no solution.
     #[must_use]
     pub fn new(problem: &Problem, fit: &Fit) -> Option<Self> {
         let hypothesis = Hypothesis::new(problem, &fit.set, &fit.values);
         let (begin, fixed) = (problem.columns.begin, hypothesis.fixed());
-        if hypothesis.free.len() != fit.sensitivities.len() {
+        if fit.set.0.is_empty() {
             return None;
         }
         let mut names: Vec<String> = (0..begin).map(|_| "the beginning".to_owned()).collect();
@@ -69,7 +70,9 @@ impl Spread {
                 weights.push(if free.log { 1.0 } else { spread.powi(-2) });
             }
         }
-        let (mut gram, mut drive) = Linear::of(problem).joined(&fit.sensitivities, &fit.residual);
+        let (point, now) = (fit.point(problem), &fit.prediction);
+        let linear = Linear::fresh(&hypothesis, &point, now);
+        let (mut gram, mut drive) = linear.joined(&hypothesis.sensitivities(&point, now), &fit.residual);
         let temper = (fit.square / problem.whitener.count() as f64).max(1.0);
         gram = silent(gram / temper, &weights, problem, &hypothesis, fit);
         drive /= temper;

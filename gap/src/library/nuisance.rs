@@ -12,8 +12,8 @@ const BEYOND: f64 = 0.04;
 /// How much less than nothing a fit may try, of what cannot be less.
 const LESS: f64 = 0.05;
 
-/// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of 1 % would not.
-const STEP: f64 = 0.02;
+/// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of a hundredth would not.
+const STEP: f64 = 0.002;
 /// Alignment of the accelerometers with the platform's axes, about each [rad]: the model file has no name for it.
 const ALIGNMENT_RAD: f64 = 1e-3;
 /// How round the corners of the friction's clamp are, in shares of each shape [1]: no law near zero rate is known better, and

@@ -155,7 +155,7 @@ impl Climb<'_> {
             .iter()
             .zip(points)
             .zip(outcomes)
-            .map(|((hypothesis, point), outcome)| Linear::fresh(hypothesis, point, outcome))
+            .map(|((hypothesis, point), outcome)| Linear::fresh(hypothesis, point, &outcome.prediction))
             .collect();
     }
 

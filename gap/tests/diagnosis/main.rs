@@ -5,6 +5,9 @@ mod corpus;
 mod noise;
 
 use corpus::{Case, Excitation, as_log, simulate};
+use gimbal_gap::fit::{Effort, Problem, Set, refine};
+use gimbal_gap::judge::Spread;
+use gimbal_gap::record::Record;
 use gimbal_gap::report::json;
 use gimbal_gap::{Diagnosis, diagnose};
 use gimbal_log::{Column, Log};
@@ -327,6 +330,20 @@ fn a_motor_whose_delay_is_pure_in_part_is_no_gap() {
 
 /// With `phi' + e w_x` for `phi'`, which the gyro sees, the equations are those of a platform whose vehicle turns by `e w_x` more
 /// and on which the torque `Jg e w_x'` acts.
+#[test]
+fn how_well_a_value_is_known_does_not_hang_on_the_steps_of_the_sensitivities() {
+    let (log, model) = (log_with(Excitation::Manoeuvre, &[("loop_delay", vec![2.4e-4])]), ModelFile::default());
+    let record = Record::new(&log, &model.config);
+    let mut problem = Problem::new(&record, &model);
+    let delay = problem.candidates.iter().position(|own| own.effect == "loop_delay").expect("a candidate");
+    let fit = refine(&problem, &Set(vec![delay]), &[vec![2.4e-4]], None, Effort::Thorough);
+    let error_s = |problem: &Problem| Spread::new(problem, &fit).expect("a spread").errors[0][0];
+    let coarse_s = error_s(&problem);
+    problem.nuisances.iter_mut().for_each(|own| own.step *= 0.1);
+    // a lag, a delay and a pure delay nearly stand for each other
+    assert!((coarse_s / error_s(&problem) - 1.0).abs() < 0.1, "{coarse_s:e} {:e}", error_s(&problem));
+}
+
 #[test]
 fn a_gyro_out_of_line_goes_with_the_cross_rate() {
     let off_rad = 1e-4;
