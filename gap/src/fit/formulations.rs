@@ -25,11 +25,18 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
     } else {
         vec![(extension.index, candidate.values(&extension.amplitudes))]
     };
+    let closer = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
     let fitted = |(index, own): (usize, Vec<f64>)| {
         let (set, values) = extended(from, index, own);
-        refine(problem, &set, &values, Some(from), Effort::Quick)
+        let fit = refine(problem, &set, &values, Some(from), Effort::Quick);
+        if from.set.0.is_empty() && fit.is_held(problem) {
+            // it began where nominal parameters went that far for want of the effect, and the walls that hold them let it go
+            // back by small steps alone
+            let anew = refine(problem, &set, &fit.values, None, Effort::Quick);
+            return std::cmp::min_by(fit, anew, closer);
+        }
+        fit
     };
-    let closer = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
     let closest = starts.into_par_iter().map(fitted).min_by(closer)?;
     // other formulations are tried where the first could be named, from the same place: a prior is about where a fit begins
     let others = OTHERS.iter().find(|(effect, _)| *effect == candidate.effect).map_or(&[][..], |(_, others)| others);

@@ -78,6 +78,13 @@ impl Fit {
         self.shifts.iter().zip(&problem.nuisances).any(|(shift, own)| shift.abs() > own.tolerance)
     }
 
+    /// Whether it has one that none of its effects releases beyond it.
+    pub(super) fn is_held(&self, problem: &Problem) -> bool {
+        let released = |name| self.set.0.iter().any(|&index| problem.candidates[index].releases.contains(&name));
+        let mut all = self.shifts.iter().zip(&problem.nuisances);
+        all.any(|(shift, own)| own.is_beyond(*shift) && !released(own.name))
+    }
+
     /// Where the fit stands.
     pub(crate) fn point(&self, problem: &Problem) -> Point {
         let state = self.begin.state.iter().zip(&problem.begin.state).take(problem.columns.begin).map(|(a, b)| a - b);
