@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::refine::Effort;
 use super::search::{polish, same};
 use super::{Fit, Problem, Set, refine};
+use crate::simulate::GRAVITY_MPS2;
 
 /// Sets that are looked at.
 const LOOKED_AT: usize = 3;
@@ -20,13 +21,13 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
         .enumerate()
         .take(LOOKED_AT)
         .flat_map(|(index, fit)| {
-            let others = straightened(problem, fit).into_iter().chain(late_otherwise(problem, fit));
+            let others = [straightened, late_otherwise, levelled].into_iter().filter_map(|of| of(problem, fit));
             lesser(fit, index == 0).chain(others).map(move |less| (fit, less))
         })
         .collect::<Vec<_>>()
         .into_par_iter()
         .map(|(from, (set, values))| {
-            let from = inside_tolerances(problem, from, &set);
+            let from = beginning(problem, from, &set, &values);
             let mut fit = refine(problem, &set, &values, Some(&from), Effort::Quick);
             if fit.cost() < NEAR * least {
                 polish(problem, &mut fit);
@@ -42,12 +43,20 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
     }
 }
 
-/// A fit with nominal parameters that a smaller set does not release inside of their tolerances.
-fn inside_tolerances(problem: &Problem, fit: &Fit, set: &Set) -> Fit {
+/// A fit with nominal parameters that another set does not release inside of their tolerances, and with those that it
+/// releases where its values have them.
+fn beginning(problem: &Problem, fit: &Fit, set: &Set, values: &[Vec<f64>]) -> Fit {
     let mut from = fit.clone();
     for index in fit.set.0.iter().filter(|index| !set.0.contains(index)) {
         for place in problem.candidates[*index].releases.iter().filter_map(|name| problem.nuisance(name)) {
             from.shifts[place] = problem.nuisances[place].within(from.shifts[place]);
+        }
+    }
+    for (index, values) in set.0.iter().zip(values).filter(|(index, _)| !fit.set.0.contains(index)) {
+        for (name, value) in problem.candidates[*index].releases.iter().zip(values) {
+            if let Some(place) = problem.nuisance(name) {
+                from.shifts[place] += if problem.nuisances[place].absolute { *value } else { value.ln_1p() };
+            }
         }
     }
     from
@@ -87,6 +96,23 @@ fn late_otherwise(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> 
         _ => return None,
     };
     if value > 0.0 { exchanged(problem, fit, place, instead, value) } else { None }
+}
+
+/// A set whose friction is higher at whatever rate or load the log has, with a level of as much in that place: from the nominal
+/// one that is a long way, which the excess or the load's share may have found shorter.
+fn levelled(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
+    let (inputs, rows) = (&problem.record.inputs, problem.record.rows());
+    let mean = |of: &dyn Fn(usize) -> f64| (0..rows).map(of).sum::<f64>() / rows as f64;
+    let [x_mps2, y_mps2, _] = &inputs.accel_mps2;
+    let at = |effect: &str| fit.effects.iter().position(|own| *own == effect);
+    let (place, more) = match (at("stribeck"), at("load_dependence")) {
+        (Some(place), None) => (place, fit.values[place][0] / mean(&|row| inputs.load_nm[row])),
+        (None, Some(place)) => {
+            (place, fit.values[place][0] * mean(&|row| x_mps2[row].hypot(y_mps2[row])) / GRAVITY_MPS2)
+        }
+        _ => return None,
+    };
+    if more > 0.0 && more.is_finite() { exchanged(problem, fit, place, "friction_level", more) } else { None }
 }
 
 /// A set with another effect in the place of one, of such a size; none where it has that one, too.

@@ -8,7 +8,8 @@
 
 use gimbal_servo::bearing::{Config, ViscousLaw};
 
-const GRAVITY_MPS2: f64 = 9.806_65;
+/// Standard acceleration of gravity [m/s2].
+pub(crate) const GRAVITY_MPS2: f64 = 9.806_65;
 const POUND_PER_INCH2_PA: f64 = 6_894.757_293_168_361;
 const RADPS_RPM: f64 = 30.0 / std::f64::consts::PI;
 const BREAK_CST_RPM: f64 = 2000.0;

@@ -21,7 +21,7 @@ mod prediction;
 mod running;
 mod sprung;
 
-pub(crate) use bearing::{Viscous, load_nm};
+pub(crate) use bearing::{GRAVITY_MPS2, Viscous, load_nm};
 pub use begin::Begin;
 pub(crate) use chain::{ANGLES, TORQUES};
 pub use corner::Corner;

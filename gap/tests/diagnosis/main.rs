@@ -331,6 +331,18 @@ fn a_motor_whose_delay_is_pure_in_part_is_no_gap() {
 /// With `phi' + e w_x` for `phi'`, which the gyro sees, the equations are those of a platform whose vehicle turns by `e w_x` more
 /// and on which the torque `Jg e w_x'` acts.
 #[test]
+fn a_level_of_friction_far_from_nominal_is_not_taken_for_what_it_is_like_at_one_load() {
+    for level in [0.55, 1.7] {
+        let diagnosis =
+            diagnose(&log_with(Excitation::RateTable, &[("friction_level", vec![level])]), &ModelFile::default());
+        let found = &diagnosis.decision.as_ref().expect("a decision").found;
+        assert_eq!(names(&diagnosis), ["friction_level"], "{level}");
+        // the nominal level is off by its tolerance at most
+        assert!(((1.0 + found[0].values[0]) / (1.0 + level) - 1.0).abs() < 0.15, "{level}: {found:?}");
+    }
+}
+
+#[test]
 fn how_well_a_value_is_known_does_not_hang_on_the_steps_of_the_sensitivities() {
     let (log, model) = (log_with(Excitation::Manoeuvre, &[("loop_delay", vec![2.4e-4])]), ModelFile::default());
     let record = Record::new(&log, &model.config);

@@ -1,13 +1,12 @@
 //! The bearings' friction: its level, the clamp, steps that cross a corner, build-up over a displacement.
 
 use super::Law;
+use crate::simulate::GRAVITY_MPS2;
 use crate::simulate::corner::NO_CORNER;
 use crate::simulate::lanes::{Lanes, side, within};
 use crate::simulate::now::Now;
 use crate::simulate::physics::BuildUp;
 use crate::simulate::sprung::{Chain, Forces};
-
-const GRAVITY_MPS2: f64 = 9.806_65;
 
 impl<const L: usize> Law<'_, L> {
     /// `T_load + T_visc` and what effects make of it.
