@@ -13,7 +13,7 @@ use crate::record::Record;
 const TOO_QUIET: f64 = 0.98;
 /// How sure it must be that noise of low frequency was taken too high: few lines that hide what is slow, and thirty parameters
 /// take some of it [nats].
-const TOO_HIGH: f64 = 10.0;
+const TOO_HIGH: f64 = 12.0;
 /// What a fit near the noise leaves of it.
 const NEAR: f64 = 1.1;
 /// How often the noise is taken again.
