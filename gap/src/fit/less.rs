@@ -76,7 +76,7 @@ fn lesser(fit: &Fit, best: bool) -> impl Iterator<Item = (Set, Vec<Vec<f64>>)> {
 
 /// A set whose cable has a loop longer than any is, with a spring in its place.
 fn straightened(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
-    let place = fit.effects.iter().position(|effect| *effect == "cable_hysteresis")?;
+    let place = at(fit, "cable_hysteresis")?;
     let longest_rad = Effect::from_name("cable_hysteresis")?.parameters()[1].high;
     let &[torque_nm, displacement_rad, ..] = fit.values[place].as_slice() else { return None };
     if displacement_rad < longest_rad {
@@ -89,8 +89,7 @@ fn straightened(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
 /// where nominal parameters make up for the rest.
 fn late_otherwise(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
     let lag_s = problem.base.config.servo.motor_lag_s;
-    let at = |effect: &str| fit.effects.iter().position(|own| *own == effect);
-    let (place, instead, value) = match (at("motor_lag"), at("loop_delay")) {
+    let (place, instead, value) = match (at(fit, "motor_lag"), at(fit, "loop_delay")) {
         (Some(place), None) => (place, "loop_delay", fit.values[place][0] * lag_s),
         (None, Some(place)) => (place, "motor_lag", fit.values[place][0] / lag_s),
         _ => return None,
@@ -104,8 +103,7 @@ fn levelled(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
     let (inputs, rows) = (&problem.record.inputs, problem.record.rows());
     let mean = |of: &dyn Fn(usize) -> f64| (0..rows).map(of).sum::<f64>() / rows as f64;
     let [x_mps2, y_mps2, _] = &inputs.accel_mps2;
-    let at = |effect: &str| fit.effects.iter().position(|own| *own == effect);
-    let (place, more) = match (at("stribeck"), at("load_dependence")) {
+    let (place, more) = match (at(fit, "stribeck"), at(fit, "load_dependence")) {
         (Some(place), None) => (place, fit.values[place][0] / mean(&|row| inputs.load_nm[row])),
         (None, Some(place)) => {
             (place, fit.values[place][0] * mean(&|row| x_mps2[row].hypot(y_mps2[row])) / GRAVITY_MPS2)
@@ -113,6 +111,11 @@ fn levelled(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
         _ => return None,
     };
     if more > 0.0 && more.is_finite() { exchanged(problem, fit, place, "friction_level", more) } else { None }
+}
+
+/// Place of an effect in a fit.
+fn at(fit: &Fit, effect: &str) -> Option<usize> {
+    fit.effects.iter().position(|own| *own == effect)
 }
 
 /// A set with another effect in the place of one, of such a size; none where it has that one, too.

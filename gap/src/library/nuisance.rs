@@ -12,7 +12,7 @@ const BEYOND: f64 = 0.04;
 /// How much less than nothing a fit may try, of what cannot be less.
 const LESS: f64 = 0.05;
 
-/// Step of a sensitivity over the tolerance: columns nearly cancel each other, a curvature of a hundredth would not.
+/// Step of a sensitivity over the tolerance: columns nearly cancel each other, and what a curvature adds to one would not.
 const STEP: f64 = 0.002;
 /// Alignment of the accelerometers with the platform's axes, about each [rad]: the model file has no name for it.
 const ALIGNMENT_RAD: f64 = 1e-3;
