@@ -50,6 +50,12 @@ impl Compensator {
         Self { poles, output: core::array::from_fn(|power| scaled[power] - direct * poles[power]), direct }
     }
 
+    /// Of `z_0`, which the other states follow from, what holds a torque for good: `a_0` is 0, as D(s) has the factor s.
+    #[must_use]
+    pub(crate) fn held(&self, torque_nm: f64) -> f64 {
+        torque_nm / self.output[0]
+    }
+
     /// `z'` for the angle that the servo sees.
     #[must_use]
     pub(crate) fn slope(&self, z: &[f64; ORDER], angle_rad: f64) -> [f64; ORDER] {

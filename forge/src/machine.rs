@@ -161,6 +161,11 @@ impl<'a> Machine<'a> {
         self.events_s.clear();
     }
 
+    /// Adds to the torque that the servo's integrator holds.
+    pub fn hold(&mut self, torque_nm: f64) {
+        self.states[SERVO] += self.compensator.held(torque_nm);
+    }
+
     /// Runs to the next row.
     pub fn advance(&mut self) {
         let step_s = self.track.period_s / self.steps_per_row as f64;

@@ -60,6 +60,7 @@ impl Scene {
             machine.advance();
         }
         machine.zero_record();
+        machine.hold(truth.drive.begins_nm);
         let rows = self.rows();
         let mut samples = Vec::with_capacity(rows);
         samples.push(machine.sample());

@@ -108,6 +108,8 @@ pub struct Drive {
     pub step_rad: Option<f64>,
     /// Noise of the pick-off that the servo takes for motion, one value a row of the track [rad].
     pub noise_rad: Vec<f64>,
+    /// What the integrator holds at the record's beginning beside what it came to [N m].
+    pub begins_nm: f64,
     /// Relative loss of torque at full heat, torque of full heat [N m], time constant [s].
     pub heating: Option<[f64; 3]>,
     /// Torque over its own size.

@@ -2,7 +2,7 @@
 
 use gimbal_servo::Config;
 
-use super::drift::{self, Drift, NAMES, TURNS};
+use super::drift::{self, BEGINNING, Drift, NAMES, TURNS};
 use crate::detect::{DETECTABLE, Nuisance, Projection, Whitener};
 use crate::draw::Draw;
 use crate::effects::{Effect, Scale, World, block_of, library_names};
@@ -16,6 +16,8 @@ pub(super) const STEPS: usize = 4;
 pub(super) const QUANTISATION: &str = "pickoff_quantisation";
 /// Share of a tolerance over which a sensitivity is taken.
 const SENSITIVITY_SHARE: f64 = 0.3;
+/// Draws from which the noise floor is taken.
+const DRAWS: usize = 6;
 /// How often parameters move by their sensitivities to take a change from it, and norm from which on it needs that.
 const MOVES: usize = 6;
 const LARGE: f64 = 10.0 * DETECTABLE;
@@ -49,6 +51,15 @@ fn plus(a: &Outputs, b: &Outputs, sign: f64) -> Outputs {
     core::array::from_fn(|channel| a[channel].iter().zip(&b[channel]).map(|(x, y)| x + sign * y).collect())
 }
 
+/// What the instruments show of the undisturbed plant under noisy inputs.
+fn noisy(scene: &Scene, base: &World, noise: &Noise, draw: &mut Draw, steps: usize) -> Outputs {
+    let (shaken, beside) = scene.shaken(&base.truth, noise, draw);
+    let carried = Scene::outputs(base, &scene.run(&shaken, &noise.on_inputs(&scene.track, draw), steps));
+    let [torque, gimbal] = [noise.motor_torque_nm, noise.gimbal_angle_rad]
+        .map(|white| noise.series(white, scene.rows(), scene.track.period_s, draw));
+    plus(&carried, &[beside, torque, gimbal], 1.0)
+}
+
 impl<'a> Bench<'a> {
     pub(super) fn new(
         scene: &'a Scene,
@@ -76,14 +87,9 @@ impl<'a> Bench<'a> {
         let loads = Loads::new(&base.truth.config.bearing, &scene.track, steps);
         let samples = scene.run_with(&base.truth, &scene.track, steps, Some(&loads));
         let outputs = Scene::outputs(base, &samples);
-        let (rows, period_s) = (scene.rows(), scene.track.period_s);
-        let (shaken, beside) = scene.shaken(&base.truth, noise, draw);
-        let carried = Scene::outputs(base, &scene.run(&shaken, &noise.on_inputs(&scene.track, draw), steps));
-        let [torque, gimbal] =
-            [noise.motor_torque_nm, noise.gimbal_angle_rad].map(|white| noise.series(white, rows, period_s, draw));
-        let measured: Outputs = [beside, torque, gimbal];
-        let floor = plus(&plus(&carried, &outputs, -1.0), &measured, 1.0);
-        let whitener = Whitener::new(&floor, used, period_s);
+        let floor: Vec<Outputs> =
+            (0..DRAWS).map(|_| plus(&noisy(scene, base, noise, draw, steps), &outputs, -1.0)).collect();
+        let whitener = Whitener::new(&floor, used, scene.track.period_s);
         let mut bench = Self {
             scene,
             base,
@@ -99,7 +105,7 @@ impl<'a> Bench<'a> {
             pickoff_rad: noise.gyro_angle_rad,
         };
         bench.logged = Some(Scene::outputs(base, &scene.run(&base.truth, &base.sensors.logged(&scene.track), steps)));
-        for name in NAMES.into_iter().chain(TURNS) {
+        for name in NAMES.into_iter().chain(TURNS).chain([BEGINNING]) {
             // a stop that is never touched has no sensitivity
             if name == "stop_angle" && !bench.samples.iter().any(|sample| sample.on_stop) {
                 continue;
@@ -118,7 +124,7 @@ impl<'a> Bench<'a> {
     }
 
     /// What a world shows against its own logged inputs, as far as the undisturbed plant does not show it too.
-    fn seen(&self, world: &World) -> Outputs {
+    pub(super) fn seen(&self, world: &World) -> Outputs {
         let turned = |world: &World| world.sensors.misalignment_rad.map(f64::to_bits);
         let samples = self.scene.run_with(&world.truth, &self.scene.track, self.steps, Some(&self.loads));
         let shown = Scene::outputs(world, &samples);

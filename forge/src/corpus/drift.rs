@@ -55,6 +55,11 @@ pub(super) const NAMES: [&str; 24] = [
 /// Names of the turns of the accelerometers about x, y, z.
 pub(super) const TURNS: [&str; 3] = ["accelerometers_about_x", "accelerometers_about_y", "accelerometers_about_z"];
 
+/// Name of what the integrator holds at the record's beginning beside what it came to, in units of [`BEGINNING_NM`].
+pub(super) const BEGINNING: &str = "beginning";
+/// Of the size of the torques on the gimbal [N m].
+const BEGINNING_NM: f64 = 1e-3;
+
 /// Which axis the accelerometers are turned about.
 fn turn(name: &str) -> Option<usize> {
     TURNS.iter().position(|own| *own == name)
@@ -81,6 +86,9 @@ pub(super) fn tolerance(name: &str) -> f64 {
 
 /// From where to where one may still drift from where it is.
 pub(super) fn limits(name: &str, now: f64) -> (f64, f64) {
+    if name == BEGINNING {
+        return (f64::NEG_INFINITY, f64::INFINITY);
+    }
     let tolerance = tolerance(name);
     let lower = if name == PURE_DELAY { 0.0 } else { -tolerance };
     (lower - now, tolerance - now)
@@ -139,6 +147,7 @@ pub(super) fn shift(world: &mut World, nominal: &Config, name: &str, change: f64
             truth.drive.delay_s += change * nominal.servo.motor_lag_s;
             truth.config.servo.motor_lag_s -= change * nominal.servo.motor_lag_s;
         }
+        BEGINNING => truth.drive.begins_nm += change * BEGINNING_NM,
         "gyro_damping" => truth.config.gyro.damping_nm_s_per_rad += change * nominal.gyro.damping_nm_s_per_rad,
         "angular_momentum" => truth.config.gyro.angular_momentum_nm_s += change * nominal.gyro.angular_momentum_nm_s,
         "stop_angle" => truth.config.gyro.stop_angle_rad += change * nominal.gyro.stop_angle_rad,

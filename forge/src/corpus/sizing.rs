@@ -40,7 +40,7 @@ impl Bench<'_> {
                 let rows = self.outputs[0].len() as f64;
                 Some(size * size / (12.0 * self.pickoff_rad * self.pickoff_rad) * (0.5 * rows).sqrt())
             }
-            RANDOM_TORQUE => Some(self.whitener.power_of(&self.difference(&self.world(effect, size)))),
+            RANDOM_TORQUE => Some(self.whitener.power_of(&self.seen(&self.world(effect, size)), &self.outputs)),
             _ => None,
         }
     }
@@ -141,7 +141,19 @@ mod tests {
         let line = projection.left_of(&bench.between(&with, &base));
         let (difference, moved) = bench.left_by_moving(&with, &base, &projection, &[]);
         let left = moved.left_of(&difference);
-        assert!(line > DETECTABLE && left < 0.2 * DETECTABLE, "{line} {left}");
+        assert!(line > DETECTABLE && left < 0.3 * DETECTABLE, "{line} {left}");
+    }
+
+    #[test]
+    fn what_the_integrator_carries_is_not_seen_without_the_torque() {
+        let (scene, drift, noise, draw) = drawn(33);
+        let nominal = Config::consistent();
+        let base = drift.world(&nominal);
+        let size = |used: &[usize]| {
+            let bench = Bench::new(&scene, &base, &nominal, &drift, &noise, used, &mut draw.clone());
+            bench.detectable_size(&Effect::plain("constant_torque"), &bench.projection())
+        };
+        assert!(size(&[0, 1]).is_some() && size(&[0]).is_none(), "{:?} {:?}", size(&[0, 1]), size(&[0]));
     }
 
     #[test]
