@@ -11,8 +11,10 @@ use crate::judge::{Verdict, decide};
 use crate::record::Record;
 use crate::settle::{Settled, settled};
 
-/// What counts as less, in logarithms of an rms a channel.
-const LESS: f64 = 0.1;
+/// What counts as no more where nothing is wrong with the undone log, and as less where something is, in logarithms of an rms
+/// a channel: what is slow may hide in the noise of a log that an effect has changed by thousands of times the noise.
+const NO_MORE: f64 = 0.1;
+const LESS: f64 = 0.25;
 
 /// Whether the mistake explains a log better than the library does: nothing is wrong with the undone log and it leaves no
 /// more, or it leaves less.
@@ -20,8 +22,8 @@ pub(crate) fn mistaken(as_it_is: &Settled, mut undone: Record, model: &ModelFile
     undone.quieten(&crate::library::platform(model));
     let mended = settled(&undone, model);
     let nothing_wrong = decide(&mended.problem, &mended.search, &model.tolerance).verdict == Verdict::NoGap;
-    let margin = LESS * undone.channels.len() as f64;
-    left(&mended) < left(as_it_is) + if nothing_wrong { margin } else { -margin }
+    let margin = if nothing_wrong { NO_MORE } else { -LESS };
+    left(&mended) < left(as_it_is) + margin * undone.channels.len() as f64
 }
 
 /// What the closest fit leaves.

@@ -44,7 +44,7 @@ pub(crate) fn shaken(settled: &Settled) -> Option<f64> {
         Some(torque) => with_torque(settled, [angle, torque]),
         None => by_shape(settled, angle),
     }?;
-    let slip_radps = settled.search.closest().physics.config.bearing.slip_rate_radps;
+    let slip_radps = settled.search.closest().physics.slip_rate_radps();
     let least_radps = (NOTABLE * record.rate_noise.rms_radps).max(LEAST_OF_SLIP * slip_radps);
     (rate_radps > least_radps).then_some(rate_radps)
 }

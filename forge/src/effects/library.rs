@@ -18,7 +18,7 @@ pub(super) fn range(effect: &Effect) -> Option<(f64, f64)> {
         "friction_level" => (0.02, if growing { 2.0 } else { 0.8 }),
         "viscous_friction" => (1e-6, 2e-2),
         "stribeck" => (1e-5, 1e-2),
-        "presliding" => (2e-6, 1e-2),
+        "presliding" => (1e-5, 1e-2),
         "load_dependence" => (1e-3, 1.0),
         "direction_asymmetry" => (1e-3, 0.6),
         "quadratic_drag" => (1e-7, 1e-2),

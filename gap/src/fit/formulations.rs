@@ -52,17 +52,26 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
     others.par_iter().map(other).chain([closest]).min_by(closer)
 }
 
-/// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does.
+/// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does; where walls hold
+/// its nominal parameters, which went there for want of the effect, or beside the nominal model.
 fn settings(problem: &Problem, from: &Fit, effect: &str) -> Vec<(usize, Vec<f64>)> {
     let of_effect = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
     let places: Vec<(usize, Vec<f64>)> =
         of_effect.map(|(index, candidate)| (index, candidate.probes[0].0.clone())).collect();
-    let tried = |(index, own): &(usize, Vec<f64>)| {
-        let (set, values) = extended(from, *index, own.clone());
-        (set, Point { values, ..from.point(problem) })
+    let point = from.point(problem);
+    let beside = |shifts: &[f64]| {
+        let tried = |(index, own): &(usize, Vec<f64>)| {
+            let (set, values) = extended(from, *index, own.clone());
+            (set, Point { values, shifts: shifts.to_vec(), ..point.clone() })
+        };
+        left(problem, &places.iter().map(tried).collect::<Vec<_>>())
     };
-    let tries: Vec<(Set, Point)> = places.iter().map(tried).collect();
-    let mut all: Vec<(f64, (usize, Vec<f64>))> = left(problem, &tries).into_iter().zip(places).collect();
+    let mut least = beside(&point.shifts);
+    if from.is_held(problem) {
+        let of_nominal = beside(&vec![0.0; point.shifts.len()]);
+        least.iter_mut().zip(of_nominal).for_each(|(least, own)| *least = least.min(own));
+    }
+    let mut all: Vec<(f64, (usize, Vec<f64>))> = least.into_iter().zip(places).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     first_of_each(&mut all, |(_, (_, own))| own.get(1).copied());
     all.into_iter().take(FORMULATIONS).map(|(_, setting)| setting).collect()

@@ -20,6 +20,10 @@ const ALIGNMENT_RAD: f64 = 1e-3;
 /// the model file has no name for it.
 const ROUNDNESS: f64 = 1.0;
 
+/// Share by which the clamp may be narrower than the nominal one: it stands in for stiction, and nobody knows how sharp
+/// that is.
+const SHARPER: f64 = 0.9;
+
 /// Displacement over which the clamp's friction follows the rate [rad]: nobody knows it to be none.
 const FOLLOWS_RAD: f64 = 1e-6;
 
@@ -172,6 +176,8 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         added(ROUNDNESS, "roundness of the clamp", |p| &mut p.friction.corner.wide),
         added(ROUNDNESS, "roundness of half its width", |p| &mut p.friction.corner.middle),
         added(ROUNDNESS, "roundness of its corners alone", |p| &mut p.friction.corner.narrow),
+        never_less(ROUNDNESS, "tails of the clamp", |p| &mut p.friction.corner.tails),
+        never_less(SHARPER, "sharpness of the clamp", |p| &mut p.friction.sharper),
         never_less(FOLLOWS_RAD, "displacement of the clamp", |p| &mut p.friction.follows_rad),
         relative(default, "T1", |p| &mut p.config.servo.lead_time_constants_s[0]),
         relative(default, "T2", |p| &mut p.config.servo.lead_time_constants_s[1]),
@@ -227,7 +233,13 @@ mod tests {
     #[test]
     fn contract_what_cannot_be_less_than_none_is_no_less() {
         let all = nuisances(&Tolerance::default(), &platform(&ModelFile::default()));
-        for name in [PURE_DELAY, "torque read late", "displacement of the clamp"] {
+        for name in [
+            PURE_DELAY,
+            "torque read late",
+            "tails of the clamp",
+            "sharpness of the clamp",
+            "displacement of the clamp",
+        ] {
             let own = all.iter().find(|own| own.name == name).expect("a nominal parameter");
             let cost = |share: f64| own.prior(share * own.tolerance, share * own.tolerance).2;
             assert!(cost(0.9) < 2.0 && cost(-0.04) < 1.0 && cost(-0.5) > 100.0 && cost(1.5) > 100.0, "{name}");

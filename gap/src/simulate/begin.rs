@@ -27,7 +27,7 @@ impl Begin {
         let Config { servo, bearing, unbalance, .. } = &physics.config;
         let rate = inputs.rate_radps[0];
         let level = inputs.load_nm[0] + Viscous::new(bearing).torque_nm(rate.abs());
-        let disturbance = level * (rate / bearing.slip_rate_radps).clamp(-1.0, 1.0)
+        let disturbance = level * (rate / physics.slip_rate_radps()).clamp(-1.0, 1.0)
             + unbalance.torque_nm(inputs.accel_mps2[0][0], inputs.accel_mps2[1][0]);
         let torque_nm = torque_nm.unwrap_or(disturbance);
         let signal = servo.gain_nm_per_rad_s * theta_rad;

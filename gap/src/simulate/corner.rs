@@ -1,22 +1,23 @@
 //! The corners of the friction's clamp at the slip rate, and what they have more where they are round.
 //!
 //! ```text
-//! share(x) = clamp(x) + wide (tanh x - clamp(x)) - sgn x (middle q(x, 1) + narrow q(x, 0.35))        x = w / w_s
+//! share(x) = clamp(x) + wide (tanh x - clamp(x)) + tails (x / (1 + x^2)^(1/2) - clamp(x))              x = w / w_s
+//!            - sgn x (middle q(x, 1) + narrow q(x, 0.35))
 //! q(x, h) = max(0, h - ||x| - 1|)^2 / (4 h)
 //! ```
 //!
-//! With these three `x / (1 + |x|^n)^(1/n)` for n from 3 on, and `ln(cosh(b (x + 1)) / cosh(b (x - 1))) / 2 b` for b from 2
+//! With the three but for the tails `x / (1 + |x|^n)^(1/n)` for n from 3 on, and `ln(cosh(b (x + 1)) / cosh(b (x - 1))) / 2 b` for b from 2
 //! on, are met to 0.01.
 
 use super::lanes::within;
 
-/// So many slip rates away a round corner is none any more.
+/// So many slip rates away a round corner without tails is none any more.
 pub(super) const NO_CORNER: f64 = 5.0;
 /// Half widths of the corners that are round by a parabola.
 const MIDDLE: f64 = 1.0;
 const NARROW: f64 = 0.35;
 
-/// How round the clamp's corners are, in shares of three shapes; the clamp as it is has none of any.
+/// How round the clamp's corners are, in shares of four shapes; the clamp as it is has none of any.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Corner {
     /// Of a hyperbolic tangent.
@@ -25,6 +26,8 @@ pub struct Corner {
     pub middle: f64,
     /// Of a parabola a third of that.
     pub narrow: f64,
+    /// Of a root, which is never quite at its end.
+    pub tails: f64,
 }
 
 impl Corner {
@@ -33,28 +36,37 @@ impl Corner {
         *self != Self::default()
     }
 
+    /// Whether it goes on beyond [`NO_CORNER`].
+    pub(super) fn has_tails(&self) -> bool {
+        self.tails.abs() > 0.0
+    }
+
     /// What it has more than a clamp.
     #[inline(always)]
     pub(super) fn rounding(&self, x: f64) -> f64 {
         let away = x.abs();
+        let tails = if self.has_tails() { self.tails * (x / (1.0 + x * x).sqrt() - within(x, 1.0)) } else { 0.0 };
         if away >= NO_CORNER {
-            return 0.0;
+            return tails;
         }
         let parabola = |half: f64| (half - (away - 1.0).abs()).max(0.0).powi(2) / (4.0 * half);
         let parabolas = self.middle * parabola(MIDDLE) + self.narrow * parabola(NARROW);
-        self.wide * (x.tanh() - within(x, 1.0)) - x.signum() * parabolas
+        tails + self.wide * (x.tanh() - within(x, 1.0)) - x.signum() * parabolas
     }
 
     /// Its integral from 0 to a rate that is not below.
     pub(super) fn rounded_area(&self, x: f64) -> f64 {
+        let clamp = |x: f64| if x > 1.0 { x - 0.5 } else { 0.5 * x * x };
         let near = x.min(NO_CORNER);
-        let clamp = if near > 1.0 { near - 0.5 } else { 0.5 * near * near };
         let parabola = |half: f64| {
             let rising = (near - 1.0 + half).clamp(0.0, half).powi(3);
             let falling = half.powi(3) - (half - (near - 1.0).clamp(0.0, half)).powi(3);
             (rising + falling) / (12.0 * half)
         };
-        self.wide * (near.cosh().ln() - clamp) - self.middle * parabola(MIDDLE) - self.narrow * parabola(NARROW)
+        let tails = if self.has_tails() { self.tails * ((1.0 + x * x).sqrt() - 1.0 - clamp(x)) } else { 0.0 };
+        tails + self.wide * (near.cosh().ln() - clamp(near))
+            - self.middle * parabola(MIDDLE)
+            - self.narrow * parabola(NARROW)
     }
 }
 
@@ -63,18 +75,20 @@ mod tests {
     use super::{Corner, NO_CORNER};
     use crate::simulate::lanes::within;
 
-    const ALL: Corner = Corner { wide: 0.7, middle: 0.4, narrow: -0.3 };
+    const ALL: Corner = Corner { wide: 0.7, middle: 0.4, narrow: -0.3, tails: 0.0 };
 
     #[test]
     fn closed_form_round_corners_meet_other_laws_and_end() {
         let tangent = Corner { wide: 1.0, ..Corner::default() };
-        let cosh = Corner { wide: 0.0, middle: 0.067, narrow: 0.789 };
-        let power = Corner { wide: 0.058, middle: 0.0, narrow: 0.768 };
+        let cosh = Corner { middle: 0.067, narrow: 0.789, ..Corner::default() };
+        let power = Corner { wide: 0.058, narrow: 0.768, ..Corner::default() };
+        let root = Corner { tails: 1.0, ..Corner::default() };
         for x in [-4.7, -1.2, -1.0, -0.8, 0.0, 0.5, 0.95, 1.0, 1.1, 1.7, 2.9, 3.0, 7.0_f64] {
             let laws = [
                 (tangent, x.tanh()),
                 (cosh, ((4.0 * (x + 1.0)).cosh() / (4.0 * (x - 1.0)).cosh()).ln() / 8.0),
                 (power, x / (1.0 + x.abs().powi(8)).powf(0.125)),
+                (root, x / (1.0 + x * x).sqrt()),
             ];
             for (corner, law) in laws {
                 let round = corner.rounding(x) + within(x, 1.0);
@@ -87,12 +101,12 @@ mod tests {
 
     #[test]
     fn closed_form_their_area_is_what_they_add_up_to() {
-        let step = 1e-4;
+        let (all, step) = (Corner { tails: -0.2, ..ALL }, 1e-4);
         let mut area = 0.0;
-        for k in 0..50_000 {
+        for k in 0..70_000 {
             let x = step * f64::from(k);
-            assert!((ALL.rounded_area(x) - area).abs() < 1e-7, "{x}");
-            area += step * ALL.rounding(x + 0.5 * step);
+            assert!((all.rounded_area(x) - area).abs() < 1e-7, "{x}");
+            area += step * all.rounding(x + 0.5 * step);
         }
     }
 }

@@ -60,6 +60,8 @@ pub struct Friction {
     pub asymmetry: f64,
     /// How round the clamp's corners are.
     pub corner: Corner,
+    /// Share by which the clamp is narrower than the nominal one.
+    pub sharper: f64,
     /// Displacement over which the clamp's share follows the rate, at the slip rate and above it [rad].
     pub follows_rad: f64,
     /// `b w` [N m s/rad].
@@ -194,6 +196,7 @@ impl Default for Friction {
             per_g: 0.0,
             asymmetry: 0.0,
             corner: Corner::default(),
+            sharper: 0.0,
             follows_rad: 0.0,
             viscous_nm_s: 0.0,
             quadratic_nm_s2: 0.0,
@@ -222,6 +225,11 @@ impl Physics {
     /// Where the float stops [rad]; the configured angle is what the pick-off reads there, less its bias.
     pub(super) fn stop_rad(&self) -> f64 {
         self.config.gyro.stop_angle_rad / self.measurement.pickoff_factor
+    }
+
+    /// Rate up to which the friction of the bearings follows the rate [rad/s].
+    pub(crate) fn slip_rate_radps(&self) -> f64 {
+        self.config.bearing.slip_rate_radps * (1.0 - self.friction.sharper)
     }
 
     /// The nominal platform.

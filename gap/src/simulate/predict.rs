@@ -226,6 +226,8 @@ mod tests {
             all.push(curved);
             let mut following = base.clone();
             following.friction.follows_rad = 1e-6 * share;
+            following.friction.sharper = 0.5 * share;
+            following.friction.corner.tails = share;
             following.pure_delay = share;
             all.push(following);
             let mut stops = base.clone();

@@ -314,6 +314,19 @@ fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
     assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
 }
 
+/// The clamp stands in for stiction, and nobody knows how sharp that is.
+#[test]
+fn a_bearing_sharper_than_the_clamp_is_no_gap() {
+    for excitation in [Excitation::RateTable, Excitation::Manoeuvre] {
+        let mut platform = corpus::drifted(&Config::consistent(), 0.6, 23);
+        platform.bearing.slip_rate_radps *= 0.2;
+        let rows = corpus::rows(excitation, SECONDS, 23);
+        let log = as_log(&corpus::simulate_rows(&rows, &platform, &[], 1.0, &mut corpus::rng(23, 3)).converted());
+        let diagnosis = diagnose(&log, &ModelFile::default());
+        assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{excitation:?}: {:?}", names(&diagnosis));
+    }
+}
+
 /// A delay of the same length, half of it pure.
 #[test]
 fn a_motor_whose_delay_is_pure_in_part_is_no_gap() {

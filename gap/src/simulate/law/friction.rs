@@ -95,7 +95,7 @@ impl<const L: usize> Law<'_, L> {
     /// Whether any of the rates is near a round corner.
     #[inline(always)]
     fn is_round_at(&self, w: Lanes<L>) -> bool {
-        self.is_round && w.any(self.slip_radps, |w, slip| w.abs() < NO_CORNER * slip)
+        self.is_round && (self.has_tails || w.any(self.slip_radps, |w, slip| w.abs() < NO_CORNER * slip))
     }
 
     #[inline(always)]
