@@ -31,7 +31,7 @@ pub(super) fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
     let columns = slices(&problem.whitened);
     let mut drive = drive(&columns, &fit.residual);
     // priors pull the shifts that the fit has already
-    let (chosen, mut precision) = problem.chosen(&fit.set.0);
+    let (chosen, mut precision) = problem.chosen_at(&fit.set.0, &fit.values);
     let begin = problem.columns.begin;
     let pull = Pull::new(problem, &precision, &fit.shifts);
     for (place, slope) in pull.slope.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(super) fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
             }
             let mut set = fit.set.0.clone();
             set.push(index);
-            let (wide, mut wide_precision) = problem.chosen(&set);
+            let (wide, mut wide_precision) = problem.chosen_at(&set, &fit.values);
             let mut drive = drive.clone();
             // a released parameter is no longer pulled back
             let wide_pull = Pull::new(problem, &wide_precision, &fit.shifts);

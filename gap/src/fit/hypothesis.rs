@@ -98,7 +98,7 @@ pub(crate) struct Hypothesis<'a> {
 impl<'a> Hypothesis<'a> {
     /// Its free values, and their priors around `start`.
     pub(crate) fn new(problem: &'a Problem, set: &'a Set, start: &[Vec<f64>]) -> Self {
-        let (_, mut precision) = problem.chosen(&set.0);
+        let (_, mut precision) = problem.chosen_at(&set.0, start);
         precision.truncate(problem.columns.begin + problem.columns.nuisances);
         let limits = limits(problem, &precision);
         Self { problem, set, free: free(problem, set, start), precision, limits }

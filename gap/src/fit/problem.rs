@@ -17,6 +17,8 @@ use crate::library::{Candidate, Nuisance};
 use crate::record::{Record, rough, tails};
 use crate::simulate::{Begin, Physics, Prediction};
 
+/// Least relative change whose logarithm is taken.
+const LEAST_CHANGE: f64 = -0.95;
 /// Time blocks.
 pub const BLOCKS: usize = 10;
 /// Share of the best fit's excess put down to the formulation; what power of the noise may stand out by, and by how many
@@ -232,5 +234,20 @@ impl<'a> Problem<'a> {
             }
         }
         (chosen, sigma.iter().map(|sigma| 1.0 / (sigma * sigma)).collect())
+    }
+
+    /// The same of a set with values: a nominal parameter that one takes farther than is realistic is not pulled back from there.
+    pub(crate) fn chosen_at(&self, set: &[usize], values: &[Vec<f64>]) -> (Vec<usize>, Vec<f64>) {
+        let (chosen, mut precision) = self.chosen(set);
+        for (&index, values) in set.iter().zip(values) {
+            for (release, &value) in self.candidates[index].releases.iter().zip(values) {
+                if let Some(place) = self.nuisance(release) {
+                    let far = if self.nuisances[place].absolute { value } else { value.max(LEAST_CHANGE).ln_1p() };
+                    let own = &mut precision[self.columns.begin + place];
+                    *own = own.min(1.0 / (far * far));
+                }
+            }
+        }
+        (chosen, precision)
     }
 }

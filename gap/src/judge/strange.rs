@@ -78,7 +78,7 @@ impl fmt::Display for Stranger {
 #[must_use]
 pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let linear = Linear::of(problem);
-    let (_, precision) = problem.chosen(&fit.set.0);
+    let (_, precision) = problem.chosen_at(&fit.set.0, &fit.values);
     let begin = problem.columns.begin;
     let fixed = begin + problem.columns.nuisances;
     let (slopes, curvatures) = problem.pulled(&precision, &fit.shifts);

@@ -314,6 +314,18 @@ fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
     assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
 }
 
+/// With every other parameter where it is nominally, what their tolerances leave open of a scale lies around the truth.
+#[test]
+fn a_value_beyond_what_is_realistic_is_not_pulled_back() {
+    let effects = vec![("pickoff_scale", vec![-0.3])];
+    let case = Case { seed: 23, excitation: Excitation::Manoeuvre, seconds: SECONDS, effects, drift: 0.0, noise: 1.0 };
+    let diagnosis = diagnose(&as_log(&simulate(&case)), &ModelFile::default());
+    let found = &diagnosis.decision.as_ref().expect("a decision").found;
+    assert_eq!(names(&diagnosis), ["pickoff_scale"]);
+    let (value, error) = (found[0].values[0], found[0].errors[0]);
+    assert!((value + 0.3).abs() < 0.5 * error, "{value} +- {error}");
+}
+
 /// The clamp stands in for stiction, and nobody knows how sharp that is.
 #[test]
 fn a_bearing_sharper_than_the_clamp_is_no_gap() {
