@@ -4,7 +4,10 @@
 //! noise of a logged rate shows where the vehicle turns about. So the series is cut into short frames, and each
 //! frequency of each frame is weighed by its own noise, from several draws.
 
-use realfft::RealFftPlanner;
+use std::sync::Arc;
+
+use realfft::num_complex::Complex;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
 use super::frames::{Frames, HOP};
 use crate::scene::Outputs;
@@ -29,8 +32,9 @@ pub struct Whitener {
     skip: usize,
     count: usize,
     length: usize,
-    /// Values of a transform for each row.
-    padding: f64,
+    /// Transforms of that length, there and back.
+    forward: Arc<dyn RealToComplex<f64>>,
+    back: Arc<dyn ComplexToReal<f64>>,
     /// One over the noise amplitude by frequency, one list a channel used.
     weights: Vec<Vec<f64>>,
     frames: Frames,
@@ -94,18 +98,21 @@ impl Whitener {
         let skip = (UNSCORED_S / period_s) as usize;
         let count = draws.first().map_or(0, |noise| noise[0].len() - skip);
         let length = count.next_power_of_two();
-        let of = |channel: &usize| draws.iter().map(|noise| noise[*channel][skip..].to_vec()).collect::<Vec<_>>();
+        let of = |channel: &usize| draws.iter().map(|noise| noise[*channel][skip..].to_vec()).collect();
+        let noise: Vec<Vec<Vec<f64>>> = used.iter().map(of).collect();
+        let mut planner = RealFftPlanner::<f64>::new();
         let mut whitener = Self {
             used: used.to_vec(),
             skip,
             count,
             length,
-            padding: length as f64 / count as f64,
-            weights: used.iter().map(|channel| weights(&of(channel), length)).collect(),
+            forward: planner.plan_fft_forward(length),
+            back: planner.plan_fft_inverse(length),
+            weights: noise.iter().map(|draws| weights(draws, length)).collect(),
             frames: Frames::new(count),
             local: Vec::new(),
         };
-        whitener.local = (0..used.len()).map(|place| whitener.local_of(place, &of(&used[place]))).collect();
+        whitener.local = noise.iter().enumerate().map(|(place, draws)| whitener.local_of(place, draws)).collect();
         whitener
     }
 
@@ -132,14 +139,13 @@ impl Whitener {
     }
 
     /// Transform of a difference over the amplitude of the noise.
-    fn lines(&self, place: usize, difference: &[f64]) -> Vec<realfft::num_complex::Complex<f64>> {
-        let forward = RealFftPlanner::<f64>::new().plan_fft_forward(self.length);
+    fn lines(&self, place: usize, difference: &[f64]) -> Vec<Complex<f64>> {
         let mut input: Vec<f64> =
             difference.iter().enumerate().map(|(row, value)| value * taper(row, self.count)).collect();
         input.resize(self.length, 0.0);
-        let mut lines = forward.make_output_vec();
-        if forward.process(&mut input, &mut lines).is_err() {
-            lines.fill(realfft::num_complex::Complex::default());
+        let mut lines = self.forward.make_output_vec();
+        if self.forward.process(&mut input, &mut lines).is_err() {
+            lines.fill(Complex::default());
         }
         for (value, weight) in lines.iter_mut().zip(&self.weights[place]) {
             *value *= *weight;
@@ -150,14 +156,13 @@ impl Whitener {
     /// A difference after the mean spectrum of the noise: noise is white then, of rms 1.
     fn whitened(&self, place: usize, difference: &[f64]) -> Vec<f64> {
         let mut lines = self.lines(place, difference);
-        let back = RealFftPlanner::<f64>::new().plan_fft_inverse(self.length);
         // what rounding leaves there is no part of a real series
         lines[0].im = 0.0;
         if let Some(last) = lines.last_mut() {
             last.im = 0.0;
         }
         let mut series = vec![0.0; self.length];
-        if back.process(&mut lines, &mut series).is_err() {
+        if self.back.process(&mut lines, &mut series).is_err() {
             series.fill(0.0);
         }
         series.truncate(self.count);
@@ -196,7 +201,8 @@ impl Whitener {
             let lines = self.lines(place, &self.difference_of(place, with, without));
             lines.iter().flat_map(|value| [value.re, value.im]).collect::<Vec<_>>().chunks(SMOOTH).map(block).sum()
         };
-        (0.5 * self.padding * (0..self.used.len()).map(of).sum::<f64>()).sqrt()
+        let padding = self.length as f64 / self.count as f64;
+        (0.5 * padding * (0..self.used.len()).map(of).sum::<f64>()).sqrt()
     }
 }
 

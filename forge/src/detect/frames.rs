@@ -1,6 +1,9 @@
 //! Short frames of a series and their transforms: a tight frame, in which the sum of squares is that of the series.
 
-use realfft::RealFftPlanner;
+use std::sync::Arc;
+
+use realfft::num_complex::Complex;
+use realfft::{RealFftPlanner, RealToComplex};
 
 /// Rows from one frame to the next; each is twice as long.
 pub(super) const HOP: usize = 64;
@@ -11,12 +14,14 @@ pub(super) struct Frames {
     count: usize,
     /// Root of a Hann window: the squares of neighbouring ones sum to 1.
     window: Vec<f64>,
+    forward: Arc<dyn RealToComplex<f64>>,
 }
 
 impl Frames {
     pub(super) fn new(count: usize) -> Self {
         let sine = |place: usize| libm::sin(core::f64::consts::PI * (place as f64 + 0.5) / (2 * HOP) as f64);
-        Self { count, window: (0..2 * HOP).map(sine).collect() }
+        let forward = RealFftPlanner::<f64>::new().plan_fft_forward(2 * HOP);
+        Self { count, window: (0..2 * HOP).map(sine).collect(), forward }
     }
 
     fn frames(&self) -> usize {
@@ -44,16 +49,15 @@ impl Frames {
 
     /// Real and imaginary part of each frequency of each frame.
     pub(super) fn of(&self, series: &[f64]) -> Vec<[f64; 2]> {
-        let forward = RealFftPlanner::<f64>::new().plan_fft_forward(2 * HOP);
-        let (mut input, mut output) = (forward.make_input_vec(), forward.make_output_vec());
+        let (mut input, mut output) = (self.forward.make_input_vec(), self.forward.make_output_vec());
         let mut all = Vec::with_capacity(self.cells());
         for frame in 0..self.frames() {
             input.fill(0.0);
             for (row, place) in self.rows(frame) {
                 input[place] = series[row] * self.window[place];
             }
-            if forward.process(&mut input, &mut output).is_ok() {
-                let scaled = |(line, value): (usize, &realfft::num_complex::Complex<f64>)| {
+            if self.forward.process(&mut input, &mut output).is_ok() {
+                let scaled = |(line, value): (usize, &Complex<f64>)| {
                     [value.re * Self::scale(line), value.im * Self::scale(line)]
                 };
                 all.extend(output.iter().enumerate().map(scaled));

@@ -53,10 +53,8 @@ fn beginning(problem: &Problem, fit: &Fit, set: &Set, values: &[Vec<f64>]) -> Fi
         }
     }
     for (index, values) in set.0.iter().zip(values).filter(|(index, _)| !fit.set.0.contains(index)) {
-        for (name, value) in problem.candidates[*index].releases.iter().zip(values) {
-            if let Some(place) = problem.nuisance(name) {
-                from.shifts[place] += if problem.nuisances[place].absolute { *value } else { value.ln_1p() };
-            }
+        for (place, shift) in problem.released(*index, values) {
+            from.shifts[place] += shift;
         }
     }
     from

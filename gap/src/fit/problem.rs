@@ -17,8 +17,6 @@ use crate::library::{Candidate, Nuisance};
 use crate::record::{Record, rough, tails};
 use crate::simulate::{Begin, Physics, Prediction};
 
-/// Least relative change whose logarithm is taken.
-const LEAST_CHANGE: f64 = -0.95;
 /// Time blocks.
 pub const BLOCKS: usize = 10;
 /// Share of the best fit's excess put down to the formulation; what power of the noise may stand out by, and by how many
@@ -214,6 +212,15 @@ impl<'a> Problem<'a> {
         self.nuisances.iter().position(|nuisance| nuisance.name == name)
     }
 
+    /// Places of the nominal parameters that a candidate releases, and the shifts that its values stand for.
+    pub(crate) fn released(&self, index: usize, values: &[f64]) -> impl Iterator<Item = (usize, f64)> {
+        let of = |(name, &value): (&&'static str, &f64)| {
+            let place = self.nuisance(name)?;
+            Some((place, self.nuisances[place].shift_of(value)))
+        };
+        self.candidates[index].releases.iter().zip(values).filter_map(of)
+    }
+
     /// Columns and prior precisions of a set of candidates.
     #[must_use]
     pub fn chosen(&self, set: &[usize]) -> (Vec<usize>, Vec<f64>) {
@@ -240,12 +247,9 @@ impl<'a> Problem<'a> {
     pub(crate) fn chosen_at(&self, set: &[usize], values: &[Vec<f64>]) -> (Vec<usize>, Vec<f64>) {
         let (chosen, mut precision) = self.chosen(set);
         for (&index, values) in set.iter().zip(values) {
-            for (release, &value) in self.candidates[index].releases.iter().zip(values) {
-                if let Some(place) = self.nuisance(release) {
-                    let far = if self.nuisances[place].absolute { value } else { value.max(LEAST_CHANGE).ln_1p() };
-                    let own = &mut precision[self.columns.begin + place];
-                    *own = own.min(1.0 / (far * far));
-                }
+            for (place, shift) in self.released(index, values) {
+                let own = &mut precision[self.columns.begin + place];
+                *own = own.min(1.0 / (shift * shift));
             }
         }
         (chosen, precision)

@@ -125,6 +125,11 @@ impl Nuisance {
         if self.absolute { moved - nominal } else { moved / nominal - 1.0 }
     }
 
+    /// The shift that stands for a change.
+    pub(crate) fn shift_of(&self, change: f64) -> f64 {
+        if self.absolute { change } else { change.max(LEAST_CHANGE).ln_1p() }
+    }
+
     /// Moves the parameter.
     pub fn shift(&self, physics: &mut Physics, by: f64) {
         let value = (self.field)(physics);
@@ -132,6 +137,8 @@ impl Nuisance {
     }
 }
 
+/// Least relative change whose logarithm is taken.
+const LEAST_CHANGE: f64 = -0.95;
 /// Up to this share of a value something is added to its logarithm.
 const LOGARITHM: f64 = 0.5;
 
@@ -257,6 +264,8 @@ mod tests {
         assert!((change("unbalance x", -0.3 * x_kg_m) / x_kg_m - (-0.3_f64).exp_m1()).abs() < 1e-12);
         assert!((change("unbalance y", 1e-5) - 1e-5).abs() < 1e-18);
         assert!((change("loop_gain", 0.2) - 0.2_f64.exp_m1()).abs() < 1e-12);
+        let gain = all.iter().find(|own| own.name == "loop_gain").expect("a parameter");
+        assert!((gain.shift_of(gain.change(&physics, -0.3)) + 0.3).abs() < 1e-12);
         // no step where the logarithm ends
         let [below, above] = [0.499_999, 0.500_001].map(|share| change("unbalance x", share * x_kg_m));
         assert!((above - below).abs() < 1e-5 * x_kg_m);
