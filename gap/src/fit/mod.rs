@@ -27,7 +27,6 @@ mod search;
 mod shapes;
 mod signals;
 mod slip;
-mod stiction;
 mod tried;
 mod turning;
 mod vectors;

@@ -10,7 +10,6 @@ use super::heavy::heavy;
 use super::less::with_less;
 use super::refine::{Effort, STILL, refined};
 use super::refit::rebase;
-use super::stiction::elsewhere;
 use super::{Fit, Problem, refine};
 
 /// A set of candidates, by index.
@@ -110,9 +109,6 @@ impl Looked {
             let before = best.square;
             rebase(problem, best);
             polish(problem, best);
-            if let Some(other) = left_open(problem, best).and_then(|best| elsewhere(problem, best, Effort::Full)) {
-                *best = other;
-            }
             self.based_at = (before - best.square < STILL).then_some(best.square);
             if best.square > GOES_ON * before {
                 break;
@@ -175,20 +171,11 @@ fn closest<'a>(null: &'a Fit, fits: &'a [Fit]) -> &'a Fit {
 #[must_use]
 pub fn null(problem: &mut Problem, from: Option<&Fit>) -> Fit {
     let (fit, columns) = refined(problem, &Set::default(), &[], from, Effort::Thorough);
-    if let Some(other) = left_open(problem, &fit).and_then(|fit| elsewhere(problem, fit, Effort::Thorough)) {
-        rebase(problem, &other);
-        return other;
-    }
     match columns {
         Some(columns) => problem.replace(columns),
         None => rebase(problem, &fit),
     }
     fit
-}
-
-/// A fit that leaves more than the noise.
-fn left_open<'a>(problem: &Problem, fit: &'a Fit) -> Option<&'a Fit> {
-    Some(fit).filter(|fit| !is_closed(problem, fit))
 }
 
 /// Single effects, the best first; and what they were chosen from.

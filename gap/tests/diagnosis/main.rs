@@ -1,7 +1,6 @@
 //! The diagnosis on logs from the reference plant.
 
 mod alike;
-mod bristles;
 #[path = "../../examples/corpus/mod.rs"]
 mod corpus;
 mod noise;
