@@ -27,8 +27,17 @@ const LEAST: usize = 20;
 /// The step on whose multiples all angles lie, where it adds to the noise [rad].
 #[must_use]
 pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<f64> {
+    let rows = valid.iter().filter(|valid| **valid).count() as f64;
+    let shown = |step_rad: &f64| {
+        let over = step_rad / noise_rad;
+        over > LEAST_COUNT && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN
+    };
+    multiples_of(theta, valid, noise_rad).filter(shown)
+}
+
+/// The step on whose multiples all angles lie, whatever its size, but for that of written digits [rad].
+pub(super) fn multiples_of(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<f64> {
     let mut angles: Vec<f64> = theta.iter().zip(valid).filter(|(_, valid)| **valid).map(|(angle, _)| *angle).collect();
-    let rows = angles.len() as f64;
     angles.sort_by(f64::total_cmp);
     let gaps = angles.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > WRITTEN * noise_rad);
     let mut gaps: Vec<f64> = gaps.collect();
@@ -42,9 +51,7 @@ pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<
     let whole = gaps.iter().filter(|gap| (**gap / first - (**gap / first).round()).abs() < OFF).count() as f64;
     let steps: f64 = gaps.iter().map(|gap| (gap / first).round()).sum();
     let step_rad = gaps.iter().sum::<f64>() / steps;
-    let over = step_rad / noise_rad;
-    let shown = over > LEAST_COUNT && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN;
-    (whole > WHOLE * gaps.len() as f64 && shown && !is_decimal(step_rad)).then_some(step_rad)
+    (whole > WHOLE * gaps.len() as f64 && !is_decimal(step_rad)).then_some(step_rad)
 }
 
 /// Angles as the steps have them, without what was added behind: the multiples of the step, counted from where most are.

@@ -6,7 +6,12 @@
 //! ```
 //!
 //! beyond `LEAST_HZ`, where the loop is open, and at rows about which theta moves less than half a step: elsewhere the loop saw
-//! what is between the rows. A share of one is a pick-off that steps, one of zero a converter behind it.
+//! what is between the rows. A share of one is a pick-off that steps, one of zero a converter behind it. Where noise that the
+//! loop does not see is as large as the steps, every reading is off by both, and the share is that of the steps' power:
+//!
+//! ```text
+//! share = (q^2 / 12) / noise^2
+//! ```
 
 use realfft::num_complex::Complex;
 
@@ -25,9 +30,32 @@ const LEAST_ROWS: usize = 60;
 /// which it must be away from that, or from none.
 const SEEN: f64 = 0.1;
 const SURE: f64 = 4.0;
+/// Standard errors by which steps that the noise hides must be seen, and how far off their power the share may be.
+const SURE_HIDDEN: f64 = 3.5;
+const POWER: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+
+/// What the loop has of the steps, and its standard error.
+struct Share {
+    share: f64,
+    error: f64,
+}
 
 /// Whether the loop sees steps of this size; none where this log does not tell.
 pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<bool> {
+    let Share { share, error } = share(problem, fit, step_rad)?;
+    let seen = share > SEEN && share > SURE * error;
+    (seen || share + SURE * error < SEEN).then_some(seen)
+}
+
+/// Whether the loop sees steps that are no larger than noise which it does not see.
+pub(super) fn loop_sees_hidden(problem: &Problem, fit: &Fit, step_rad: f64) -> bool {
+    let power = (step_rad / problem.noise[0]).powi(2) / 12.0;
+    share(problem, fit, step_rad)
+        .is_some_and(|Share { share, error }| share > SURE_HIDDEN * error && POWER.contains(&(share / power)))
+}
+
+/// What is in the motor torque of steps of this size; none where too few rows tell.
+fn share(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<Share> {
     let theta = problem.record.channel(Signal::GyroAngle)?;
     let torque = problem.record.channel(Signal::MotorTorque)?;
     let period_s = problem.record.inputs.period_s;
@@ -60,9 +88,7 @@ pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<b
     let square: f64 = slow.iter().map(|&k| answers[k] * answers[k]).sum();
     let share = with / square;
     let rest: f64 = slow.iter().map(|&k| (torques[k] - share * answers[k]).powi(2)).sum();
-    let error = (rest / slow.len() as f64 / square).sqrt();
-    let seen = share > SEEN && share > SURE * error;
-    (seen || share + SURE * error < SEEN).then_some(seen)
+    Some(Share { share, error: (rest / slow.len() as f64 / square).sqrt() })
 }
 
 /// A series through a filter.

@@ -5,12 +5,15 @@ use gimbal_model_file::Tolerance;
 use super::against::BEYOND;
 use super::comb;
 use super::grid;
-use super::in_loop::loop_sees;
+use super::in_loop::{loop_sees, loop_sees_hidden};
 use crate::fit::{Fit, Problem};
 use crate::record::{Channel, Signal};
 
 /// Effects that they show.
 pub(crate) const READ_OFF: [&str; 2] = ["stop_angle", "pickoff_quantisation"];
+
+/// Steps over the noise that hides them, from which on the torque is asked for them.
+const FINEST: f64 = 0.5;
 
 /// How far the stop is from where it should be, as a pick-off of this scale shows it, and the error of that: where the float
 /// stands still, or as far as it went past where it should have.
@@ -42,8 +45,13 @@ pub(super) struct Steps {
 pub(super) fn steps(problem: &Problem, fit: &Fit) -> Option<Steps> {
     let theta = problem.record.channel(Signal::GyroAngle)?;
     let (angles, noise_rad) = (&theta.values, problem.noise[0]);
-    let step_rad = comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad)
-        .or_else(|| grid::step_rad(angles, &theta.valid, noise_rad))?;
+    let shown_rad = comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad)
+        .or_else(|| grid::step_rad(angles, &theta.valid, noise_rad));
+    let Some(step_rad) = shown_rad else {
+        let hidden_rad = grid::multiples_of(angles, &theta.valid, noise_rad)?;
+        let seen = hidden_rad > FINEST * noise_rad && loop_sees_hidden(problem, fit, hidden_rad);
+        return seen.then_some(Steps { step_rad: hidden_rad, of_pickoff: true });
+    };
     let of_pickoff = loop_sees(problem, fit, step_rad).unwrap_or_else(|| !grid::is_the_logs(step_rad, noise_rad));
     Some(Steps { step_rad, of_pickoff })
 }

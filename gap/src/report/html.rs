@@ -12,7 +12,7 @@ border-bottom:1px solid #ddd}figure>svg{width:100%;height:auto}svg text{font-siz
 stroke-width:1;vector-effect:non-scaling-stroke}.span{fill:#f5b04155}.tube{opacity:.25}.chosen{fill:#1f77b433}\
 .chart svg{touch-action:pan-y;cursor:crosshair;user-select:none}.hint{color:#777;font-size:.85em}.legend{font-size:.85em;margin:.2em 0}figure{margin:1em 0}figcaption{font-weight:600}\
 pre{white-space:pre-wrap;background:#f6f6f6;padding:.8em}@media print{body{margin:0;max-width:none;font-size:12px}.hint{display:none}figure,table,tr{break-inside:avoid}h2{break-after:avoid}\
-.columns{columns:2}}.columns{columns:2;column-gap:2em}.columns section{break-inside:avoid}.columns td:last-child:not(:only-child){white-space:nowrap}@media(max-width:700px){.columns{columns:1}}";
+.columns{columns:2}}.columns{columns:2;column-gap:2em}.columns section{break-inside:avoid}.columns td:last-child:not(:only-child),.columns td:nth-child(n+3){white-space:nowrap}@media(max-width:700px){.columns{columns:1}}";
 
 /// The page.
 #[must_use]

@@ -6,7 +6,7 @@ use gimbal_model_file::ModelFile;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
-use crate::corpus::{self, Case, Excitation, as_log};
+use crate::corpus::{self, Case, Excitation, PICKOFF_STEP_RAD, as_log, simulate};
 use crate::{SECONDS, log_with, names, report};
 
 /// The noise of a rate is torque wherever the bearing turns around: a loop a few per cent off rings otherwise after it.
@@ -74,4 +74,17 @@ fn steps_of_a_converter_behind_the_loop_are_no_quantised_pickoff() {
     assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:?}", names(&diagnosis));
     let in_the_loop = log_with(Excitation::Manoeuvre, &[("pickoff_quantisation", vec![step_rad])]);
     assert_eq!(names(&diagnose(&in_the_loop, &ModelFile::default())), ["pickoff_quantisation"]);
+}
+
+/// A converter whose steps are as large as the noise behind the loop: the log is on its grid whether the loop is or not.
+#[test]
+fn steps_that_noise_hides_are_told_by_the_motor_torque() {
+    let of = |effects: Vec<(&'static str, Vec<f64>)>| {
+        let case =
+            Case { seed: 23, excitation: Excitation::RateTable, seconds: 14.0, effects, drift: 0.6, noise: 0.15 };
+        let diagnosis = diagnose(&as_log(&simulate(&case).converted()), &ModelFile::default());
+        (names(&diagnosis), report(&diagnosis)["verdict"].clone())
+    };
+    assert_eq!(of(vec![("pickoff_quantisation", vec![PICKOFF_STEP_RAD])]).0, ["pickoff_quantisation"]);
+    assert_eq!(of(Vec::new()), (Vec::new(), "no_gap".into()));
 }
