@@ -24,18 +24,15 @@ const BITS: std::ops::RangeInclusive<i32> = 10..=20;
 /// Fewest gaps.
 const LEAST: usize = 20;
 
-/// The step on whose multiples all angles lie, where it adds to the noise [rad].
-#[must_use]
-pub(crate) fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<f64> {
+/// Whether a step adds to the noise of the rows that count.
+pub(super) fn adds_to_noise(step_rad: f64, valid: &[bool], noise_rad: f64) -> bool {
     let rows = valid.iter().filter(|valid| **valid).count() as f64;
-    let shown = |step_rad: &f64| {
-        let over = step_rad / noise_rad;
-        over > LEAST_COUNT && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN
-    };
-    multiples_of(theta, valid, noise_rad).filter(shown)
+    let over = step_rad / noise_rad;
+    over > LEAST_COUNT && (rows / 2.0).sqrt() * over * over / 12.0 > SHOWN
 }
 
 /// The step on whose multiples all angles lie, whatever its size, but for that of written digits [rad].
+#[must_use]
 pub(super) fn multiples_of(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<f64> {
     let mut angles: Vec<f64> = theta.iter().zip(valid).filter(|(_, valid)| **valid).map(|(angle, _)| *angle).collect();
     angles.sort_by(f64::total_cmp);
@@ -81,7 +78,11 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    use super::{is_the_logs, step_rad};
+    use super::{adds_to_noise, is_the_logs, multiples_of};
+
+    fn step_rad(theta: &[f64], valid: &[bool], noise_rad: f64) -> Option<f64> {
+        multiples_of(theta, valid, noise_rad).filter(|step_rad| adds_to_noise(*step_rad, valid, noise_rad))
+    }
 
     fn angles(step_rad: f64) -> Vec<f64> {
         let mut rng = ChaCha8Rng::seed_from_u64(1);

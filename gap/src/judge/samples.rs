@@ -45,13 +45,12 @@ pub(super) struct Steps {
 pub(super) fn steps(problem: &Problem, fit: &Fit) -> Option<Steps> {
     let theta = problem.record.channel(Signal::GyroAngle)?;
     let (angles, noise_rad) = (&theta.values, problem.noise[0]);
-    let shown_rad = comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad)
-        .or_else(|| grid::step_rad(angles, &theta.valid, noise_rad));
-    let Some(step_rad) = shown_rad else {
-        let hidden_rad = grid::multiples_of(angles, &theta.valid, noise_rad)?;
-        let seen = hidden_rad > FINEST * noise_rad && loop_sees_hidden(problem, fit, hidden_rad);
-        return seen.then_some(Steps { step_rad: hidden_rad, of_pickoff: true });
-    };
+    let by_comb = comb::step_rad(angles, &fit.prediction.gyro_angle_rad, &theta.valid, noise_rad);
+    let step_rad = by_comb.or_else(|| grid::multiples_of(angles, &theta.valid, noise_rad))?;
+    if by_comb.is_none() && !grid::adds_to_noise(step_rad, &theta.valid, noise_rad) {
+        let seen = step_rad > FINEST * noise_rad && loop_sees_hidden(problem, fit, step_rad);
+        return seen.then_some(Steps { step_rad, of_pickoff: true });
+    }
     let of_pickoff = loop_sees(problem, fit, step_rad).unwrap_or_else(|| !grid::is_the_logs(step_rad, noise_rad));
     Some(Steps { step_rad, of_pickoff })
 }
