@@ -20,7 +20,7 @@ const SECONDS: f64 = 16.0;
 const STEPS: u32 = 40;
 const ROW_S: f64 = 1e-3;
 /// Yields of the springs [rad], alike in their shares of the friction: in a geometric row.
-const YIELDS_RAD: [f64; 5] = [6e-7, 1.2e-6, 2.4e-6, 4.8e-6, 9.6e-6];
+const YIELDS_RAD: [f64; 5] = [2.4e-6, 4.8e-6, 9.6e-6, 1.92e-5, 3.84e-5];
 
 /// Noise of a poor accelerometer [m/s2].
 const FORCE_NOISE_MPS2: f64 = 0.04;

@@ -43,7 +43,7 @@ pub(super) fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
         .into_par_iter()
         .map(|index| {
             if fit.set.0.iter().any(|&has| problem.candidates[has].effect == problem.candidates[index].effect) {
-                return hopeless(index);
+                return Extension::of(index);
             }
             let mut set = fit.set.0.clone();
             set.push(index);
@@ -58,7 +58,7 @@ pub(super) fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
             let released = wide_pull.walls - pull.walls - 0.5 * (pull.cost - wide_pull.cost);
             let candidate = &problem.candidates[index];
             let Some(solution) = solve(&problem.gram, &drive, &wide, &wide_precision) else {
-                return hopeless(index);
+                return Extension::of(index);
             };
             let amplitudes: Vec<f64> = if candidate.releases.is_empty() {
                 let from = wide.len() - candidate.probes.len();
@@ -82,8 +82,11 @@ pub(super) fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
         .collect()
 }
 
-fn hopeless(index: usize) -> Extension {
-    Extension { index, gain: f64::NEG_INFINITY, amplitudes: Vec::new() }
+impl Extension {
+    /// A candidate of which the linear equations say nothing.
+    pub(super) fn of(index: usize) -> Self {
+        Self { index, gain: f64::NEG_INFINITY, amplitudes: Vec::new() }
+    }
 }
 
 /// The best candidate of each effect, the best effects first.

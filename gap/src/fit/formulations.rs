@@ -10,6 +10,8 @@ use crate::library::NAMED;
 
 /// Formulations of an effect that are fitted.
 const FORMULATIONS: usize = 2;
+/// Values over that of a grid that are tried about it.
+const FINER: [f64; 5] = [0.6, 0.77, 1.0, 1.3, 1.7];
 /// The other formulations of an effect: what says so, and its second value over that of the first formulation where the two
 /// come nearest to each other (least squares over a loop's outer branch; half of the excess).
 const OTHERS: [(&str, &[(f64, f64)]); 2] =
@@ -52,12 +54,25 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
     others.par_iter().map(other).chain([closest]).min_by(closer)
 }
 
-/// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does; where walls hold
-/// its nominal parameters, which went there for want of the effect, or beside the nominal model.
+/// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does, looked for
+/// once more about the best of its grid; where walls hold the fit's nominal parameters, which went there for want of the
+/// effect, or beside the nominal model.
 fn settings(problem: &Problem, from: &Fit, effect: &str) -> Vec<(usize, Vec<f64>)> {
     let of_effect = problem.candidates.iter().enumerate().filter(|(_, candidate)| candidate.effect == effect);
-    let places: Vec<(usize, Vec<f64>)> =
+    let grid: Vec<(usize, Vec<f64>)> =
         of_effect.map(|(index, candidate)| (index, candidate.probes[0].0.clone())).collect();
+    let best = best_of_each(problem, from, grid);
+    let finer = |(index, own): &(usize, Vec<f64>)| {
+        let (index, own) = (*index, own.clone());
+        FINER.map(|share| (index, [&[share * own[0]], &own[1..]].concat()))
+    };
+    let mut all = best_of_each(problem, from, best.iter().flat_map(finer).collect());
+    all.truncate(FORMULATIONS);
+    all
+}
+
+/// The setting of each formulation that leaves least, the best first.
+fn best_of_each(problem: &Problem, from: &Fit, places: Vec<(usize, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
     let point = from.point(problem);
     let beside = |shifts: &[f64]| {
         let tried = |(index, own): &(usize, Vec<f64>)| {
@@ -74,7 +89,7 @@ fn settings(problem: &Problem, from: &Fit, effect: &str) -> Vec<(usize, Vec<f64>
     let mut all: Vec<(f64, (usize, Vec<f64>))> = least.into_iter().zip(places).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     first_of_each(&mut all, |(_, (_, own))| own.get(1).copied());
-    all.into_iter().take(FORMULATIONS).map(|(_, setting)| setting).collect()
+    all.into_iter().map(|(_, setting)| setting).collect()
 }
 
 /// A fit's set and values with one candidate more.

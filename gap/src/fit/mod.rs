@@ -27,6 +27,7 @@ mod search;
 mod shapes;
 mod signals;
 mod slip;
+mod stiction;
 mod tried;
 mod turning;
 mod vectors;

@@ -78,11 +78,16 @@ impl Fit {
         self.shifts.iter().zip(&problem.nuisances).any(|(shift, own)| shift.abs() > own.tolerance)
     }
 
-    /// Whether it has one that none of its effects releases beyond it.
-    pub(super) fn is_held(&self, problem: &Problem) -> bool {
+    /// How many it has that none of its effects releases beyond it.
+    pub(crate) fn held(&self, problem: &Problem) -> usize {
         let released = |name| self.set.0.iter().any(|&index| problem.candidates[index].releases.contains(&name));
-        let mut all = self.shifts.iter().zip(&problem.nuisances);
-        all.any(|(shift, own)| own.is_beyond(*shift) && !released(own.name))
+        let all = self.shifts.iter().zip(&problem.nuisances);
+        all.filter(|(shift, own)| own.is_beyond(**shift) && !released(own.name)).count()
+    }
+
+    /// Whether it has one.
+    pub(super) fn is_held(&self, problem: &Problem) -> bool {
+        self.held(problem) > 0
     }
 
     /// Where the fit stands.

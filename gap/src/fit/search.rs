@@ -10,6 +10,7 @@ use super::heavy::heavy;
 use super::less::with_less;
 use super::refine::{Effort, STILL, refined};
 use super::refit::rebase;
+use super::stiction::{built_up, elsewhere};
 use super::{Fit, Problem, refine};
 
 /// A set of candidates, by index.
@@ -109,6 +110,9 @@ impl Looked {
             let before = best.square;
             rebase(problem, best);
             polish(problem, best);
+            if let Some(other) = left_open(problem, best).and_then(|best| elsewhere(problem, best, Effort::Full)) {
+                *best = other;
+            }
             self.based_at = (before - best.square < STILL).then_some(best.square);
             if best.square > GOES_ON * before {
                 break;
@@ -159,7 +163,7 @@ pub(crate) fn closed_at(problem: &Problem) -> f64 {
     CLOSED * problem.whitener.count() as f64
 }
 
-fn is_closed(problem: &Problem, fit: &Fit) -> bool {
+pub(super) fn is_closed(problem: &Problem, fit: &Fit) -> bool {
     fit.square <= closed_at(problem)
 }
 
@@ -171,11 +175,20 @@ fn closest<'a>(null: &'a Fit, fits: &'a [Fit]) -> &'a Fit {
 #[must_use]
 pub fn null(problem: &mut Problem, from: Option<&Fit>) -> Fit {
     let (fit, columns) = refined(problem, &Set::default(), &[], from, Effort::Thorough);
+    if let Some(other) = left_open(problem, &fit).and_then(|fit| elsewhere(problem, fit, Effort::Thorough)) {
+        rebase(problem, &other);
+        return other;
+    }
     match columns {
         Some(columns) => problem.replace(columns),
         None => rebase(problem, &fit),
     }
     fit
+}
+
+/// A fit that leaves more than the noise.
+fn left_open<'a>(problem: &Problem, fit: &'a Fit) -> Option<&'a Fit> {
+    Some(fit).filter(|fit| !is_closed(problem, fit))
 }
 
 /// Single effects, the best first; and what they were chosen from.
@@ -194,6 +207,9 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
             .filter(|extension| promising(problem, extension) && !is_known(extension))
             .filter_map(|extension| extend(problem, null, extension)),
     );
+    if !fits.iter().any(|fit| fit.effects == ["presliding"]) {
+        fits.extend(built_up(problem, null));
+    }
     fits.extend(heavy(problem, null));
     // what is far from nominal is for a gap that nothing near it closes
     if near_a_stop || !is_closed(problem, closest(null, &fits)) {

@@ -18,10 +18,16 @@ const BLURRED: f64 = 15.0;
 const NEVER_NEGATIVE: [&str; 2] = ["cable_hysteresis", "stribeck"];
 /// Share of the gimbal's inertia from which on an appendage is none.
 const MOST_OF_IT: f64 = 0.5;
+/// Damping ratio from which on a mode hardly rings, and is a bend of the loop.
+const HARDLY_RINGS: f64 = 0.5;
 /// Share of its least realistic value below which a size hits the end of its range.
 const FAR_BELOW: f64 = 0.03;
 /// Share of the motor's delay up to which it may be more or less pure beside an effect that shifts that delay.
 const MORE_OR_LESS_PURE: f64 = 0.05;
+/// Nominal parameters that may stand at the end of their tolerance, and what each one more costs: they stand for something that
+/// the set has not [nats].
+const HELD: usize = 3;
+const HELD_COSTS: f64 = 10.0;
 /// A nominal parameter is an effect from this many tolerances on.
 pub(super) const BEYOND: f64 = 1.15;
 /// What an effect must take away to be there when its size is not known to be more than zero [nats].
@@ -51,7 +57,8 @@ pub(super) fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: 
         };
         idle + traded(problem, fit, candidate.effect) + values
     };
-    fit.set.0.iter().enumerate().map(of).sum()
+    let strained = HELD_COSTS * fit.held(problem).saturating_sub(HELD) as f64;
+    fit.set.0.iter().enumerate().map(of).sum::<f64>() + strained
 }
 
 /// What speaks against a longer lag of which a part is pure, which a delay more is by itself; and against a delay more that
@@ -86,7 +93,8 @@ pub(crate) fn at_a_bound(effect: &str, values: &[f64], errors: &[f64]) -> f64 {
     if NEVER_NEGATIVE.contains(&effect.name()) && values[0] < 0.0 {
         return RULED_OUT;
     }
-    if effect.name() == "flexible_mode" && values[0] - errors[0] > MOST_OF_IT {
+    let mode = effect.name() == "flexible_mode";
+    if mode && (values[0] - errors[0] > MOST_OF_IT || values[2] - errors[2] > HARDLY_RINGS) {
         return RULED_OUT;
     }
     let shapes = effect.parameters().iter().zip(values.iter().zip(errors)).skip(effect.sizes());

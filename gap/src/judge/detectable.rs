@@ -9,6 +9,7 @@ use super::comb;
 use super::decide::Decision;
 use super::samples::least_stop_change;
 use crate::fit::{Fit, Problem, solve};
+use crate::library::DISPLACEMENT;
 use crate::record::{Signal, peak_rad, plateau};
 
 /// Standard errors at which an effect is named.
@@ -94,7 +95,10 @@ fn smallest(problem: &Problem, effect: Effect, tolerance: &Tolerance) -> Option<
         let informative = sigma < 0.5 * candidate.prior[0].1;
         informative.then(|| if secant { SEEN * sigma * candidate.probes[0].0[0] } else { SEEN * sigma })
     });
-    sizes.reduce(f64::min)
+    // over less than that friction of a nominal platform may build up too
+    let of_clamp = problem.nuisance(DISPLACEMENT).filter(|_| effect.name() == "presliding");
+    let least = of_clamp.map_or(0.0, |place| problem.nuisances[place].tolerance);
+    sizes.reduce(f64::min).map(|size| size.max(least))
 }
 
 /// Standard error of a column beside the nominal parameters and the beginning; the candidate's own first one if none is

@@ -99,7 +99,7 @@ fn of(effect: Effect, inputs: &Inputs, offer: &Offer) -> Vec<Candidate> {
             let mut settings = [3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3].map(|along| vec![along]).to_vec();
             settings.extend([2e-6, 1e-5, 5e-5, 3e-4].map(|along| vec![along, 1.0]));
             settings.extend([1e-4, 6e-4, 3e-3].map(|along| vec![along, 2.0]));
-            settings.extend([2e-6, 2e-5, 2e-4].map(|along| vec![along, 3.0]));
+            settings.extend([2e-6, 6e-6, 2e-5, 6e-5, 2e-4].map(|along| vec![along, 3.0]));
             secants(effect, &settings)
         }
         "loop_delay" => secants(effect, &[3e-5, 2e-4].map(|delay_s| vec![delay_s])),

@@ -9,5 +9,5 @@ pub use apply::apply;
 pub use candidates::{Candidate, Offer, candidates, narrow};
 pub(crate) use candidates::{MODE_DAMPING, NAMED, PROMISE, releases};
 pub use model::{hold, not_looked_for, platform};
-pub(crate) use nuisance::PURE_DELAY;
+pub(crate) use nuisance::{DAMPING, DISPLACEMENT, PURE_DELAY, SHARPNESS};
 pub use nuisance::{Nuisance, nuisances};

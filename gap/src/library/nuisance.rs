@@ -21,11 +21,17 @@ const ALIGNMENT_RAD: f64 = 1e-3;
 const ROUNDNESS: f64 = 1.0;
 
 /// Share by which the clamp may be narrower than the nominal one: it stands in for stiction, and nobody knows how sharp
-/// that is.
-const SHARPER: f64 = 0.9;
-
-/// Displacement over which the clamp's friction follows the rate [rad]: nobody knows it to be none.
-const FOLLOWS_RAD: f64 = 1e-6;
+/// that is. Its name.
+const SHARPER: f64 = 0.995;
+pub(crate) const SHARPNESS: &str = "sharpness of the clamp";
+/// Displacement over which the clamp's friction follows the rate [rad]: nobody knows it to be none. Its name.
+const FOLLOWS_RAD: f64 = 3e-6;
+pub(crate) const DISPLACEMENT: &str = "displacement of the clamp";
+/// Time constant of the damping of what bends over that displacement [s]. Its name.
+const DAMPED_S: f64 = 5e-3;
+pub(crate) const DAMPING: &str = "damping of that displacement";
+/// How straight it bends [1].
+const STRAIGHT: f64 = 1.0;
 
 /// How inputs run between rows, from lines, 0, to cubics, 1, and a little more than those: nobody logs it.
 const CURVED: f64 = 1.25;
@@ -184,8 +190,10 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
         added(ROUNDNESS, "roundness of half its width", |p| &mut p.friction.corner.middle),
         added(ROUNDNESS, "roundness of its corners alone", |p| &mut p.friction.corner.narrow),
         never_less(ROUNDNESS, "tails of the clamp", |p| &mut p.friction.corner.tails),
-        never_less(SHARPER, "sharpness of the clamp", |p| &mut p.friction.sharper),
-        never_less(FOLLOWS_RAD, "displacement of the clamp", |p| &mut p.friction.follows_rad),
+        never_less(SHARPER, SHARPNESS, |p| &mut p.friction.sharper),
+        never_less(FOLLOWS_RAD, DISPLACEMENT, |p| &mut p.friction.follows_rad),
+        never_less(STRAIGHT, "straightness of that displacement", |p| &mut p.friction.straight),
+        never_less(DAMPED_S, DAMPING, |p| &mut p.friction.damped_s),
         relative(default, "T1", |p| &mut p.config.servo.lead_time_constants_s[0]),
         relative(default, "T2", |p| &mut p.config.servo.lead_time_constants_s[1]),
         relative(default, "T3", |p| &mut p.config.servo.lead_time_constants_s[2]),
@@ -206,7 +214,7 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
 mod tests {
     use gimbal_model_file::{ModelFile, Tolerance};
 
-    use super::{PURE_DELAY, nuisances};
+    use super::{DAMPING, DISPLACEMENT, PURE_DELAY, SHARPNESS, nuisances};
     use crate::library::platform;
 
     #[test]
@@ -244,8 +252,10 @@ mod tests {
             PURE_DELAY,
             "torque read late",
             "tails of the clamp",
-            "sharpness of the clamp",
-            "displacement of the clamp",
+            SHARPNESS,
+            DISPLACEMENT,
+            DAMPING,
+            "straightness of that displacement",
         ] {
             let own = all.iter().find(|own| own.name == name).expect("a nominal parameter");
             let cost = |share: f64| own.prior(share * own.tolerance, share * own.tolerance).2;

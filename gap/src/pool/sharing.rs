@@ -68,6 +68,12 @@ impl Fitted {
         Some((of(&joint, own) - of(&self.joint, &self.own), joint))
     }
 
+    /// Whether something that is shared would be likelier as each log's own, by the parabolas; if too little to be set free.
+    pub(super) fn likelier_own(&self, unit: Unit) -> bool {
+        let own = toggled(&self.parameters, &self.own, unit);
+        !self.is_own(unit) && self.promised(&own, self.points.len()).is_some_and(|(gain, _)| gain > 0.0)
+    }
+
     /// The same set with one unit shared that was each log's own, or the other way round.
     pub(super) fn with_toggled(&self, materials: &[Material], unit: Unit, starts: &[Vec<Point>]) -> Option<Self> {
         let own = toggled(&self.parameters, &self.own, unit);

@@ -3,7 +3,7 @@
 
 use gimbal_model_file::Tolerance;
 
-use super::climb::Fitted;
+use super::climb::{Fitted, climb};
 use super::extend::{Promise, library, promises};
 use super::material::Material;
 use super::set::Effects;
@@ -65,7 +65,19 @@ pub(super) fn found(
             step();
         }
     }
+    let null = from_there(materials, null, &fits);
     Some(Found { null, fits, promises: singles })
+}
+
+/// The best fit may have found a way down that the nominal parameters missed: they start there once more.
+fn from_there(materials: &[Material], null: Fitted, fits: &[Fitted]) -> Fitted {
+    let Some(best) = fits.iter().max_by(|a, b| a.worth().total_cmp(&b.worth())) else { return null };
+    let without = |point: &Point| Point { values: Vec::new(), ..point.clone() };
+    let starts = vec![best.points.iter().map(without).collect()];
+    match climb(materials, &null.effects, &null.own, starts) {
+        Some(again) if again.worth() > null.worth() => again,
+        _ => null,
+    }
 }
 
 /// The nominal parameters alone, from the middle of what the logs found each by itself.

@@ -47,15 +47,15 @@ pub(super) fn weigh(
     all
 }
 
-/// What one stretch of one log carries alone, and where effects are each log's own, what one log carries: of a value that
-/// all share, the other logs say themselves whether it is theirs too.
+/// What one stretch of one log carries alone, and where effects are each log's own or are likelier so, what one log carries:
+/// of a value that all share, the other logs say themselves whether it is theirs too.
 fn alone(null: &Fitted, fits: &[Fitted], fitted: &Fitted) -> f64 {
     let names = &fitted.effects.names;
     let smaller = fits
         .iter()
         .filter(|other| is_part(&other.effects.names, names) && other.effects.names.len() + 1 == names.len());
     let has = |fitted: &Fitted| fitted.effects.names.contains(&"torque_saturation");
-    let apart = (0..names.len()).any(|effect| fitted.is_own(Unit::Effect(effect)));
+    let apart = (0..names.len()).map(Unit::Effect).any(|effect| fitted.is_own(effect) || fitted.likelier_own(effect));
     let carried = |from: &Fitted| {
         let gains: Vec<Vec<f64>> = from
             .pieces

@@ -27,6 +27,8 @@ pub(super) struct Law<'a, const L: usize> {
     is_round: bool,
     has_tails: bool,
     follows_rad: Lanes<L>,
+    damped_s: Lanes<L>,
+    straight: Lanes<L>,
     /// Whether the clamp follows the rate over a displacement, in all lanes.
     pub(super) follows: bool,
     pub(super) stop_rad: Lanes<L>,
@@ -70,6 +72,8 @@ impl<'a, const L: usize> Law<'a, L> {
             is_round: any(&|own| own.friction.corner.is_round()),
             has_tails: any(&|own| own.friction.corner.has_tails()),
             follows_rad: of(&|own| own.friction.follows_rad),
+            straight: of(&|own| own.friction.straight),
+            damped_s: of(&|own| own.friction.damped_s),
             follows: physics[0].friction.follows(),
             stop_rad: of(&Physics::stop_rad),
             unbalance_kg_m: [of(&|own| own.config.unbalance.x_kg_m), of(&|own| own.config.unbalance.y_kg_m)],

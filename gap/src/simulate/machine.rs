@@ -23,6 +23,8 @@ const SLOW_STEPS: usize = 1;
 const SHORT_STEPS: usize = 2;
 /// Change of w over a full step, over the slip rate, up to which friction turns around slowly.
 const SLOWLY: f64 = 0.25;
+/// Share of the friction from which on a clamp that follows over a displacement is not there yet.
+const BEHIND: f64 = 1e-3;
 
 /// What goes through the inputs.
 pub(super) struct Machine<'a, const N: usize, const L: usize> {
@@ -136,6 +138,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             w,
             friction,
             zeta,
+            behind: Lanes::all(0.0),
             sprung: [zeta; ELEMENTS],
             hysteresis,
             stops: self.law.stops(hysteresis),
@@ -196,6 +199,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             wild |= ahead[lane] * state.w[lane] < 0.0;
             wild |= state.x[THETA][lane].abs() > 0.95 * law.stop_rad[lane];
             wild |= state.stop[lane] != 0;
+            wild |= state.behind[lane].abs() > BEHIND;
         }
         !wild
     }
@@ -212,7 +216,8 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             || state.x[THETA][lane].abs() > 0.95 * self.law.stop_rad[lane]
             || self.law.motor_bends(lane, self.command_nm(&state.x)[lane]);
         let turns = w.abs() < near || ahead.abs() < near || ahead * w < 0.0;
-        if corner || turns && (ahead - w).abs() > SLOWLY * slip {
+        let follows = state.behind[lane].abs() > BEHIND;
+        if corner || follows || turns && (ahead - w).abs() > SLOWLY * slip {
             SHORT_STEPS
         } else if turns {
             SLOW_STEPS

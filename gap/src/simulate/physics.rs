@@ -64,6 +64,10 @@ pub struct Friction {
     pub sharper: f64,
     /// Displacement over which the clamp's share follows the rate, at the slip rate and above it [rad].
     pub follows_rad: f64,
+    /// Time constant of what it follows by: as springs with a damping do [s].
+    pub damped_s: f64,
+    /// How straight it follows: 0 exponential, 1 straight to its end.
+    pub straight: f64,
     /// `b w` [N m s/rad].
     pub viscous_nm_s: f64,
     /// `b w |w|` [N m s2/rad2].
@@ -198,6 +202,8 @@ impl Default for Friction {
             corner: Corner::default(),
             sharper: 0.0,
             follows_rad: 0.0,
+            damped_s: 0.0,
+            straight: 0.0,
             viscous_nm_s: 0.0,
             quadratic_nm_s2: 0.0,
             stribeck: None,

@@ -17,6 +17,8 @@ pub(super) struct Running<const N: usize, const L: usize> {
     pub(super) friction: Lanes<L>,
     /// Share of friction built up, with `presliding`.
     pub(super) zeta: Lanes<L>,
+    /// What a clamp that follows over a displacement still has to follow.
+    pub(super) behind: Lanes<L>,
     /// Forces of the springs before the friction, where there are any.
     pub(super) sprung: [Lanes<L>; ELEMENTS],
     /// Share of the full torque of the cable's loop, and the stops that it is made of, where there are any.
@@ -45,6 +47,7 @@ impl<const N: usize, const L: usize> Running<N, L> {
             w: Lanes::all(self.w[lane]),
             friction: Lanes::all(self.friction[lane]),
             zeta: Lanes::all(self.zeta[lane]),
+            behind: Lanes::all(self.behind[lane]),
             sprung: self.sprung.map(|sprung| Lanes::all(sprung[lane])),
             hysteresis: Lanes::all(self.hysteresis[lane]),
             stops: self.stops.of(lane),
@@ -59,6 +62,7 @@ impl<const N: usize, const L: usize> Running<N, L> {
         self.w[lane] = one.w[0];
         self.friction[lane] = one.friction[0];
         self.zeta[lane] = one.zeta[0];
+        self.behind[lane] = one.behind[0];
         self.sprung.iter_mut().zip(&one.sprung).for_each(|(all, one)| all[lane] = one[0]);
         self.hysteresis[lane] = one.hysteresis[0];
         self.stops.put(lane, &one.stops);

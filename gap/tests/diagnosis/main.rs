@@ -1,6 +1,7 @@
 //! The diagnosis on logs from the reference plant.
 
 mod alike;
+mod bristles;
 #[path = "../../examples/corpus/mod.rs"]
 mod corpus;
 mod noise;

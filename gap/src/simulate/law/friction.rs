@@ -8,6 +8,16 @@ use crate::simulate::now::Now;
 use crate::simulate::physics::BuildUp;
 use crate::simulate::sprung::{Chain, Forces};
 
+/// How often a step of bristles is taken, each time by the rate at its end of the last.
+const PASSES: usize = 3;
+
+/// Share of the friction that bristles have after a step, and how fast that goes on then [1/s]: of the share before, of the clamp's
+/// before, and of the clamp's after.
+struct Bends<const L: usize> {
+    of: [Lanes<L>; 3],
+    onward: [Lanes<L>; 3],
+}
+
 impl<const L: usize> Law<'_, L> {
     /// `T_load + T_visc` and what effects make of it.
     #[inline(always)]
@@ -68,9 +78,16 @@ impl<const L: usize> Law<'_, L> {
         (w, self.share(w))
     }
 
-    /// The same with a share z that follows the clamp's over a displacement d, `d z' = max(|w|, w_s) (share(w) - z)`, implicit,
-    /// from that at the step's begin and the rate there: w, z, share of the friction, and how much of the clamp's is in that.
-    /// With a displacement below zero, which no bearing has and a fit may try, it is as far ahead.
+    /// The same with a share z that follows the clamp's over a displacement d, as bristles do whose damping has a time
+    /// constant, implicit, from that at the step's begin and the rate there: w, z, share of the friction, and how much of the
+    /// clamp's is in that.
+    ///
+    /// ```text
+    /// share = z + tau z'      z' = max(|w|, w_s) / d ((1 - e) (c - z) + e sgn(c - z))      c = share(w)
+    /// ```
+    ///
+    /// e is how straight they bend to their end. With a displacement below zero, which no bearing has and a fit may try, it is
+    /// as far ahead.
     #[inline(always)]
     pub(in crate::simulate) fn following(
         &self,
@@ -78,12 +95,51 @@ impl<const L: usize> Law<'_, L> {
         [rate, brake, level]: [Lanes<L>; 3],
         step_s: f64,
     ) -> [Lanes<L>; 4] {
-        let moved = before.abs().above(self.slip_radps, before.abs(), self.slip_radps) * step_s;
-        let new = 1.0 / (1.0 + self.follows_rad.abs() / moved);
         let late = self.follows_rad.signum();
-        let (own, kept) = (1.0 + late * (new - 1.0), late * (1.0 - new) * from);
-        let (w, clamped) = self.clamp(rate - brake * self.built_up(level, before) * kept, brake, level * own);
-        [w, (1.0 - new) * from + new * clamped, kept + own * clamped, own]
+        let damping_s = late.above(Lanes::all(0.0), self.damped_s, Lanes::all(0.0));
+        let pull = brake * self.built_up(level, before);
+        let [clamped_before, mut w] = [self.share(before), before];
+        let mut all = [w; 4];
+        for _ in 0..PASSES {
+            let Bends { of, onward } = self.bends(from, [before, w], step_s);
+            let kept = of[0] * from + of[1] * clamped_before;
+            let damped = damping_s * (onward[0] * from + onward[1] * clamped_before);
+            let own = 1.0 + late * (of[2] - 1.0) + damping_s * onward[2];
+            let before_own = late * kept + damped;
+            let clamped;
+            (w, clamped) = self.clamp(rate - pull * before_own, brake, level * own);
+            all = [w, kept + of[2] * clamped, before_own + own * clamped, own];
+        }
+        all
+    }
+
+    /// Bristles over a step between two rates.
+    #[inline(always)]
+    fn bends(&self, from: Lanes<L>, [before, w]: [Lanes<L>; 2], step_s: f64) -> Bends<L> {
+        let fast = |w: Lanes<L>| w.abs().above(self.slip_radps, w.abs(), self.slip_radps);
+        let (begin, end) = (fast(before), fast(w));
+        // one over the displacements of the step, m: exp(-m) is 1 / (1 + m + m^2 / 2), and the clamp goes on a line
+        let along = self.follows_rad.abs() / (0.5 * step_s * (begin + end));
+        let whole = along * along + along + 0.5;
+        let (left, mean) = (along / whole, (along + 0.5) / whole);
+        let (zero, one) = (Lanes::all(0.0), Lanes::all(1.0));
+        let far = (w.side() - from).abs() * along;
+        let reaches = far.above(one, one / far, one);
+        let bending = far.above(one, reaches, zero);
+        let blend = |exponential: Lanes<L>, straight: Lanes<L>| exponential + self.straight * (straight - exponential);
+        let rate = end / (begin + end) * (2.0 / step_s);
+        Bends {
+            of: [
+                blend(along * left, one - reaches),
+                blend(along * (mean - left), zero),
+                blend(one - along * mean, reaches),
+            ],
+            onward: [
+                zero - rate * blend(left, bending),
+                zero - rate * blend(mean - left, zero),
+                rate * blend(mean, bending),
+            ],
+        }
     }
 
     /// What the corners have more than a clamp, at a rate over the slip rate.

@@ -56,12 +56,14 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
         let rate = to.rate - x[PHI_RATE];
         let level = law.level(to, ahead);
         let mut of_clamp = Lanes::all(1.0);
+        let mut behind = Lanes::all(0.0);
         let [w, zeta, share] = if law.presliding {
             self.build_up(state, [rate, brake, level], self.step_s(division))
         } else if law.follows && division != FULL_STEP {
             let [w, zeta, share, own] =
                 law.following([state.zeta, state.w], [rate, brake, level], self.step_s(division));
             of_clamp = own;
+            behind = law.share(w) - zeta;
             [w, zeta, share]
         } else {
             let (w, share) = law.clamp(rate, brake, level);
@@ -94,6 +96,7 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
         state.w = to.rate - x[PHI_RATE];
         state.friction = friction;
         state.zeta = zeta;
+        state.behind = behind;
         state.hysteresis = hysteresis;
     }
 

@@ -1,0 +1,125 @@
+//! Platforms whose bearings hold by bristles, after `LuGre` and after the elasto-plastic law, simulated here: another law about
+//! zero rate than the clamp, and no gap.
+//!
+//! ```text
+//! F = T (z + tau z')      d z' = w - |w| z s(z)      s = 1 (LuGre)      s = 0 below z_b, from there (z - z_b) / (1 - z_b)
+//! ```
+
+use gimbal_gap::diagnose;
+use gimbal_model_file::ModelFile;
+use gimbal_plant::Row;
+use gimbal_servo::Config;
+use rand::RngExt;
+use rand_distr::StandardNormal;
+
+use crate::corpus::{
+    ACCEL_NOISE_MPS2, Excitation, PICKOFF_NOISE_RAD, RATE_NOISE_RADPS, Simulated, TORQUE_NOISE_NM, as_log, drifted,
+    rng, rows,
+};
+use crate::{names, report};
+
+/// Steps a row, of Heun's method.
+const STEPS: usize = 80;
+const PERIOD_S: f64 = 1e-3;
+/// Displacement of the bristles [rad], and time constant of their damping [s].
+const DISPLACEMENT_RAD: f64 = 2e-6;
+const DAMPING_S: f64 = 1.5e-3;
+
+#[derive(Clone, Copy)]
+struct Bristles {
+    /// Share of their force up to which they only bend.
+    bend: f64,
+}
+
+/// phi, phi', theta, theta', z, the integrator's, four sections' and the motor's.
+type State = [f64; 11];
+
+impl Bristles {
+    /// z' of bristles at a rate w [1/s].
+    fn bends(self, w: f64, z: f64) -> f64 {
+        let toward = (z * w.signum()).max(0.0);
+        let yields = if self.bend > 0.0 { ((toward - self.bend) / (1.0 - self.bend)).clamp(0.0, 1.0) } else { 1.0 };
+        (w - w.abs() * z * yields) / DISPLACEMENT_RAD
+    }
+
+    fn derivative(self, platform: &Config, row: &Row, x: &State) -> State {
+        let (servo, gyro) = (&platform.servo, &platform.gyro);
+        let w = row.vehicle_rate_radps - x[1];
+        let radial = row.accel_x_mps2.hypot(row.accel_y_mps2);
+        let level_nm = platform.bearing.friction_level_nm(radial, row.accel_z_mps2, w);
+        let bends = self.bends(w, x[4]);
+        let friction_nm = level_nm * (x[4] + DAMPING_S * bends);
+        let unbalance_nm = platform.unbalance.torque_nm(row.accel_x_mps2, row.accel_y_mps2);
+        let mut out = State::default();
+        out[0] = x[1];
+        out[1] = (friction_nm + unbalance_nm - gyro.angular_momentum_nm_s * x[3] - x[10]) / servo.gimbal_inertia_kg_m2;
+        out[2] = x[3];
+        out[3] = (gyro.angular_momentum_nm_s * x[1] - gyro.damping_nm_s_per_rad * x[3]) / gyro.float_inertia_kg_m2;
+        out[4] = bends;
+        // (1 + T1 s) / s, then a lead over each lag, then the motor
+        let leads = &servo.lead_time_constants_s;
+        out[5] = servo.gain_nm_per_rad_s * x[2];
+        let mut signal = x[5] + leads[0] * out[5];
+        for (section, lag_s) in servo.lag_time_constants_s.iter().enumerate() {
+            let share = leads[section + 1] / lag_s;
+            out[6 + section] = (signal - x[6 + section]) / lag_s;
+            signal = share * signal + (1.0 - share) * x[6 + section];
+        }
+        out[10] = (signal - x[10]) / servo.motor_lag_s;
+        out
+    }
+
+    fn simulate(self, platform: &Config, rows: &[Row], seed: u64) -> Simulated {
+        let rng = &mut rng(seed, 3);
+        let mut noise = |sigma: f64| -> f64 { sigma * rng.sample::<f64, _>(StandardNormal) };
+        let mut columns: [Vec<f64>; 9] = Default::default();
+        let mut x = State::default();
+        let step_s = PERIOD_S / STEPS as f64;
+        for (k, row) in rows.iter().enumerate() {
+            let values = [
+                k as f64 * PERIOD_S,
+                row.accel_x_mps2 + noise(ACCEL_NOISE_MPS2),
+                row.accel_y_mps2 + noise(ACCEL_NOISE_MPS2),
+                row.accel_z_mps2 + noise(ACCEL_NOISE_MPS2),
+                row.vehicle_rate_radps + noise(0.1 * RATE_NOISE_RADPS),
+                row.cross_rate_radps + noise(0.1 * RATE_NOISE_RADPS),
+                x[2] + noise(PICKOFF_NOISE_RAD),
+                x[10] + noise(TORQUE_NOISE_NM),
+                x[0],
+            ];
+            columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+            let Some(next) = rows.get(k + 1) else { break };
+            for step in 0..STEPS {
+                let at = |part: usize| between(row, next, part as f64 / STEPS as f64);
+                let slope = self.derivative(platform, &at(step), &x);
+                let guess: State = std::array::from_fn(|i| x[i] + step_s * slope[i]);
+                let end = self.derivative(platform, &at(step + 1), &guess);
+                x = std::array::from_fn(|i| x[i] + 0.5 * step_s * (slope[i] + end[i]));
+            }
+        }
+        Simulated { columns }
+    }
+}
+
+/// A line between two rows.
+fn between(from: &Row, to: &Row, share: f64) -> Row {
+    let line = |a: f64, b: f64| a + share * (b - a);
+    Row {
+        accel_x_mps2: line(from.accel_x_mps2, to.accel_x_mps2),
+        accel_y_mps2: line(from.accel_y_mps2, to.accel_y_mps2),
+        accel_z_mps2: line(from.accel_z_mps2, to.accel_z_mps2),
+        vehicle_rate_radps: line(from.vehicle_rate_radps, to.vehicle_rate_radps),
+        ..*from
+    }
+}
+
+#[test]
+fn a_bearing_that_holds_by_bristles_is_no_gap() {
+    for (excitation, bend) in [(Excitation::RateTable, 0.0), (Excitation::Manoeuvre, 0.0), (Excitation::RateTable, 0.7)]
+    {
+        let platform = drifted(&Config::consistent(), 0.6, 23);
+        let log = as_log(&Bristles { bend }.simulate(&platform, &rows(excitation, 14.0, 23), 23).converted());
+        let diagnosis = diagnose(&log, &ModelFile::default());
+        assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{excitation:?}, {bend}: {:?}", names(&diagnosis));
+    }
+}
