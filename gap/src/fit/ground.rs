@@ -19,7 +19,7 @@ use super::turning::{at_once, impulse, mostly, nearly_turns, remembered, turning
 use super::whiten::Loop;
 use super::{Columns, Fit, Problem, Whitener};
 use crate::library::{Candidate, Nuisance, Offer, candidates, hold, narrow, not_looked_for, nuisances, platform};
-use crate::record::{Channel, Record, Signal, rough};
+use crate::record::{Channel, Record, Signal, least_noise, rough};
 use crate::simulate::{Begin, Physics, Prediction, predict};
 
 /// Problems under any noise are made from this.
@@ -109,8 +109,10 @@ impl<'a> Ground<'a> {
         let begin = record.begin(&base, &record.inputs);
         let nominal = predict(&base, &record.inputs, &begin, record.rows());
         let target = residual(record, &nominal);
-        let noise: Vec<f64> =
-            target.iter().zip(&record.channels).map(|(raw, channel)| rough(raw, &channel.valid)).collect();
+        let noise = |(raw, channel): (&Vec<f64>, &Channel)| {
+            rough(raw, &channel.valid).max(least_noise(&channel.values, &channel.valid))
+        };
+        let noise: Vec<f64> = target.iter().zip(&record.channels).map(noise).collect();
         let over_noise: Vec<f64> = noise.iter().map(|noise| 1.0 / noise).collect();
         let mut nuisances = nuisances(&model.tolerance, &base);
         hold(&mut nuisances, &model.known_good);

@@ -2,6 +2,7 @@
 
 mod channel;
 mod colour;
+mod converter;
 mod faults;
 mod force_noise;
 mod grid;
@@ -19,9 +20,11 @@ use std::ops::Range;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
+use self::converter::are_coarse;
 use self::grid::{Grid, filled};
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
+pub(crate) use converter::least_noise;
 pub use faults::{Data, faults};
 pub use force_noise::ForceNoise;
 pub(crate) use force_noise::slow;
@@ -62,6 +65,8 @@ pub struct Record {
     away_from_stop: Option<Range<usize>>,
     /// Runs of rows that count after it, each to the next.
     after_stops: Vec<Range<usize>>,
+    /// Whether all inputs that change do so in steps as coarse as their noise: those are of what writes the log.
+    pub(crate) is_coarse: bool,
     /// Noise of the rate.
     pub rate_noise: RateNoise,
     /// Noise of the specific force along each axis.
@@ -141,6 +146,8 @@ impl Record {
             notes.extend(channel.without_spikes());
             channels.push(channel);
         }
+        let [x, y, z] = &inputs.accel_mps2;
+        let is_coarse = are_coarse(&[x, y, z, &inputs.rate_radps]);
         let rate_noise = RateNoise::logged(&inputs.rate_radps);
         let force_noise = inputs.accel_mps2.each_ref().map(|axis| ForceNoise::logged(axis));
         let mut record = Self {
@@ -150,6 +157,7 @@ impl Record {
             plateau_rad: None,
             away_from_stop: None,
             after_stops: Vec::new(),
+            is_coarse,
             rate_noise,
             force_noise,
             faults,

@@ -1,7 +1,7 @@
 //! The stop, as the pick-off shows it: a plateau at its largest excursion.
 
+use super::converter::least_count;
 use super::rough::rough;
-use super::spikes::least_count;
 
 /// Share of its largest excursion within which the pick-off counts as on the stop, or noise in which it does.
 const SHARE: f64 = 4e-3;
@@ -47,7 +47,7 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
     let noise = rough(theta_rad, &finite);
     let near = (peak / stop_rad - 1.0).abs() < NEAR;
     let (enters, lasts) = if near { (ENTERS_NEAR, FLAT_NEAR) } else { (ENTERS, FLAT) };
-    let (band, least_scatter) = ((SHARE * peak).max(NOISES * noise), noise.max(least_count(theta_rad)));
+    let (band, least_scatter) = ((SHARE * peak).max(NOISES * noise), noise.max(least_count(theta_rad, &finite)));
     let mut on_stop = vec![false; theta_rad.len()];
     let mut level = Vec::new();
     let mut start = 0_usize;

@@ -4,19 +4,18 @@
 //! e(k) = x(k) - (4 (x(k-1) + x(k+1)) - x(k-2) - x(k+2)) / 6        0 for any cubic
 //! ```
 
+use super::converter::least_noise;
 use super::rough::rough;
 
 /// Over white noise, the scatter of e; and over that, what stands out.
 const SCATTER: f64 = 1.394;
 const STANDS_OUT: f64 = 7.0;
-/// Noise of a converter, over its step, that none falls below.
-const OF_STEP: f64 = 0.3;
 /// Share of the samples from which on outliers are none.
 const MANY: f64 = 0.03;
 
 /// Rows whose sample stands out of its neighbours, which go on without it, and what these say; none where there are many.
 pub(super) fn spikes(values: &[f64], valid: &[bool]) -> Vec<(usize, f64)> {
-    let noise = rough(values, valid).max(OF_STEP * least_count(values));
+    let noise = rough(values, valid).max(least_noise(values, valid));
     let limit = STANDS_OUT * SCATTER * noise;
     let off = |k: usize| values[k] - (4.0 * (values[k - 1] + values[k + 1]) - values[k - 2] - values[k + 2]) / 6.0;
     let alone = |&k: &usize| {
@@ -27,12 +26,6 @@ pub(super) fn spikes(values: &[f64], valid: &[bool]) -> Vec<(usize, f64)> {
     let rows = 3..values.len().saturating_sub(3);
     let found: Vec<(usize, f64)> = rows.filter(alone).map(|k| (k, values[k] - off(k))).collect();
     if found.len() as f64 > MANY * values.len() as f64 { Vec::new() } else { found }
-}
-
-/// Smallest step between two samples.
-pub(super) fn least_count(values: &[f64]) -> f64 {
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

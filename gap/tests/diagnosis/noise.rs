@@ -6,8 +6,9 @@ use gimbal_model_file::ModelFile;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
-use crate::corpus::{self, Case, Excitation, PICKOFF_STEP_RAD, as_log, simulate};
-use crate::{SECONDS, log_with, names, report};
+use crate::corpus::{self, ACCEL_NOISE_MPS2, PICKOFF_NOISE_RAD, RATE_NOISE_RADPS};
+use crate::corpus::{Case, Excitation, PICKOFF_STEP_RAD, as_log, simulate};
+use crate::{LEAST, SECONDS, log_with, names, of_columns, report};
 
 /// The noise of a rate is torque wherever the bearing turns around: a loop a few per cent off rings otherwise after it.
 #[test]
@@ -87,4 +88,36 @@ fn steps_that_noise_hides_are_told_by_the_motor_torque() {
     };
     assert_eq!(of(vec![("pickoff_quantisation", vec![PICKOFF_STEP_RAD])]).0, ["pickoff_quantisation"]);
     assert_eq!(of(Vec::new()), (Vec::new(), "no_gap".into()));
+}
+
+/// Converters of two and a half noises: where all columns have one it is the recorder's, where the angle alone has one the
+/// pick-off's. No torque tells.
+#[test]
+fn steps_of_all_columns_are_those_of_what_writes_the_log() {
+    let case = Case {
+        seed: 23,
+        excitation: Excitation::Manoeuvre,
+        seconds: SECONDS,
+        effects: Vec::new(),
+        drift: 0.6,
+        noise: 1.0,
+    };
+    let on_steps = |step: &dyn Fn(usize) -> Option<f64>| {
+        let mut simulated = simulate(&case);
+        for (place, values) in simulated.columns.iter_mut().enumerate() {
+            let Some(step) = step(place) else { continue };
+            for value in values {
+                *value = (*value / step).round() * step;
+            }
+        }
+        names(&diagnose(&of_columns(&as_log(&simulated), &LEAST), &ModelFile::default()))
+    };
+    let of_column = |place: usize| match place {
+        1..=3 => Some(2.5 * ACCEL_NOISE_MPS2),
+        4 => Some(2.5 * RATE_NOISE_RADPS),
+        6 => Some(2.5 * PICKOFF_NOISE_RAD),
+        _ => None,
+    };
+    assert_eq!(on_steps(&of_column), Vec::<&str>::new());
+    assert_eq!(on_steps(&|place| of_column(place).filter(|_| place == 6)), ["pickoff_quantisation"]);
 }
