@@ -27,21 +27,15 @@ pub(super) fn least_count(values: &[f64], valid: &[bool]) -> f64 {
     steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether all series that change do so by whole steps as coarse as their noise, each by its own.
-pub(super) fn are_coarse(series: &[&Vec<f64>]) -> bool {
-    let coarse: Vec<bool> = series.iter().filter_map(|values| is_coarse(values)).collect();
-    !coarse.is_empty() && coarse.iter().all(|coarse| *coarse)
-}
-
-/// Whether a series does; none where it stands still.
-fn is_coarse(values: &[f64]) -> Option<bool> {
+/// Whether a series changes by whole steps as coarse as its noise.
+pub(super) fn is_coarse(values: &[f64]) -> bool {
     let valid = vec![true; values.len()];
-    let step = Some(least_count(values, &valid)).filter(|step| step.is_finite())?;
+    let step = least_count(values, &valid);
     let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs() / step);
     let few: Vec<f64> = changes.filter(|change| *change > 0.0 && *change < FEW).collect();
     let whole = few.iter().filter(|change| (**change - change.round()).abs() < OFF).count() as f64;
     let noise = rough(values, &valid);
-    Some(whole > WHOLE * few.len() as f64 && COARSE * noise < step && tails(values, &valid).sqrt() > EVEN * step)
+    whole > WHOLE * few.len() as f64 && COARSE * noise < step && tails(values, &valid).sqrt() > EVEN * step
 }
 
 #[cfg(test)]
@@ -50,7 +44,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    use super::{are_coarse, least_noise};
+    use super::{is_coarse, least_noise};
 
     #[test]
     fn a_series_is_coarse_where_its_steps_are_larger_than_its_noise() {
@@ -58,13 +52,11 @@ mod tests {
         let noisy: Vec<f64> =
             (0..20_000).map(|k| (f64::from(k) * 1e-3).sin() + 1e-3 * rng.sample::<f64, _>(StandardNormal)).collect();
         let on = |step: f64| -> Vec<f64> { noisy.iter().map(|value| (value / step).round() * step).collect() };
-        let [coarse, fine, still] = [on(2.5e-3), on(4e-4), vec![1.0; 20_000]];
         let even: Vec<f64> = (0..20_000).map(|k| 0.25 * f64::from(k)).collect();
-        assert!(are_coarse(&[&coarse]) && are_coarse(&[&coarse, &still]));
-        for others in [&noisy, &fine, &even] {
-            assert!(!are_coarse(&[&coarse, others]));
+        assert!(is_coarse(&on(2.5e-3)));
+        for other in [noisy.clone(), on(4e-4), even, vec![1.0; 20_000]] {
+            assert!(!is_coarse(&other));
         }
-        assert!(!are_coarse(&[&still]));
         // a noise far below the step leaves the step's own
         let (standing, valid) = (on(0.5), vec![true; 20_000]);
         assert!((least_noise(&standing, &valid) - 0.15).abs() < 1e-12);

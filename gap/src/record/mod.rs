@@ -20,7 +20,7 @@ use std::ops::Range;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
-use self::converter::are_coarse;
+use self::converter::is_coarse;
 use self::grid::{Grid, filled};
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
@@ -65,7 +65,7 @@ pub struct Record {
     away_from_stop: Option<Range<usize>>,
     /// Runs of rows that count after it, each to the next.
     after_stops: Vec<Range<usize>>,
-    /// Whether all inputs that change do so in steps as coarse as their noise: those are of what writes the log.
+    /// Whether the rate changes in steps as coarse as its noise: what writes the log makes such.
     pub(crate) is_coarse: bool,
     /// Noise of the rate.
     pub rate_noise: RateNoise,
@@ -146,8 +146,7 @@ impl Record {
             notes.extend(channel.without_spikes());
             channels.push(channel);
         }
-        let [x, y, z] = &inputs.accel_mps2;
-        let is_coarse = are_coarse(&[x, y, z, &inputs.rate_radps]);
+        let is_coarse = is_coarse(&inputs.rate_radps);
         let rate_noise = RateNoise::logged(&inputs.rate_radps);
         let force_noise = inputs.accel_mps2.each_ref().map(|axis| ForceNoise::logged(axis));
         let mut record = Self {

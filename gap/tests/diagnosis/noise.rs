@@ -90,10 +90,10 @@ fn steps_that_noise_hides_are_told_by_the_motor_torque() {
     assert_eq!(of(Vec::new()), (Vec::new(), "no_gap".into()));
 }
 
-/// Converters of two and a half noises: where all columns have one it is the recorder's, where the angle alone has one the
+/// Converters of two and a half noises: where the rate has one too it is the recorder's, where the angle alone has one the
 /// pick-off's. No torque tells.
 #[test]
-fn steps_of_all_columns_are_those_of_what_writes_the_log() {
+fn steps_of_an_angle_whose_rate_has_them_too_are_those_of_what_writes_the_log() {
     let case = Case {
         seed: 23,
         excitation: Excitation::Manoeuvre,
