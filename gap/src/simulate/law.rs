@@ -1,5 +1,6 @@
 //! What each prediction is made of, lane by lane: bearings, torques on the gimbal and on the float, motor, pick-off.
 
+mod bristles;
 mod friction;
 
 use super::Physics;
