@@ -24,6 +24,10 @@ pub(crate) const RARE_SHIFT: f64 = 5.0;
 const RARE_BESIDE: f64 = 4.0;
 /// Least share of the gap that an effect takes away: less may be what another formulation of the others is.
 const LEAST_SHARE: f64 = 0.003;
+/// The same where it closes a gap of which the others leave so many times the noise: that one effect takes all that another
+/// formulation is off by is rare.
+const LEAST_CLOSING: f64 = 0.001;
+const OPEN: f64 = 1.1;
 /// Effects of one formulation: a constant, a factor, a product of what is logged. Whoever has them leaves nothing of them.
 const EXACT: [&str; 15] = [
     "constant_torque",
@@ -139,7 +143,9 @@ pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, noise: f64, le
     for index in 0..sets.len() {
         for other in 0..sets.len() {
             let exact = sets[other].effects.iter().all(|effect| EXACT.contains(effect));
-            let least = if exact { 0.0 } else { LEAST_SHARE * excess };
+            let closes = left(index) <= noise && left(other) > OPEN * noise;
+            let share = if closes { LEAST_CLOSING } else { LEAST_SHARE };
+            let least = if exact { 0.0 } else { share * excess };
             let worthless = is_part(&sets[other].effects, &sets[index].effects) && left(other) - left(index) < least;
             let needs = |set: &Weighed| if left(index) > noise { set.rare } else { set.cost };
             let most = sets[other].nats - needs(&sets[other]) + needs(&sets[index]) - 1.0;
