@@ -4,8 +4,7 @@
 #[path = "../examples/corpus/mod.rs"]
 mod corpus;
 
-use corpus::{ACCEL_NOISE_MPS2, Excitation, PICKOFF_NOISE_RAD, RATE_NOISE_RADPS, Simulated, TORQUE_NOISE_NM};
-use corpus::{as_log, rng, rows};
+use corpus::{Excitation, NOISE, ROW_S, Simulated, as_log, between, rng, rows, sensed};
 use gimbal_gap::{diagnose, judge::Verdict};
 use gimbal_log::Column::{AccelX, AccelY, AccelZ, GyroAngle, Time, VehicleRate};
 use gimbal_model_file::ModelFile;
@@ -18,7 +17,6 @@ const SEED: u64 = 23;
 const SECONDS: f64 = 16.0;
 /// Classical Runge-Kutta steps a row.
 const STEPS: u32 = 40;
-const ROW_S: f64 = 1e-3;
 /// Yields of the springs [rad], alike in their shares of the friction: in a geometric row.
 const YIELDS_RAD: [f64; 5] = [2.4e-6, 4.8e-6, 9.6e-6, 1.92e-5, 3.84e-5];
 
@@ -124,17 +122,6 @@ fn slopes(x: &States, row: &Row, noise_rad: f64, config: &Config, elements: &Ele
     slopes
 }
 
-fn between(a: &Row, b: &Row, share: f64) -> Row {
-    let line = |a: f64, b: f64| a + share * (b - a);
-    Row {
-        accel_x_mps2: line(a.accel_x_mps2, b.accel_x_mps2),
-        accel_y_mps2: line(a.accel_y_mps2, b.accel_y_mps2),
-        accel_z_mps2: line(a.accel_z_mps2, b.accel_z_mps2),
-        vehicle_rate_radps: line(a.vehicle_rate_radps, b.vehicle_rate_radps),
-        ..*a
-    }
-}
-
 /// From one row to the next, the pick-off's noise along a line.
 fn advance(x: &mut States, [from, to]: [&Row; 2], noise_rad: [f64; 2], config: &Config, elements: &Elements) {
     let step_s = ROW_S / f64::from(STEPS);
@@ -162,30 +149,21 @@ fn advance(x: &mut States, [from, to]: [&Row; 2], noise_rad: [f64; 2], config: &
 fn simulated(elements: &Elements, rows: &[Row], loop_rad: f64) -> Simulated {
     let config = Config::consistent();
     let mut rng = rng(SEED, 3);
-    let mut noise = |sigma: f64| -> f64 { sigma * rng.sample::<f64, _>(StandardNormal) };
     let mut x = [0.0; ELEMENTS + MOST];
     for _ in 0..3000 {
         advance(&mut x, [&rows[0], &rows[0]], [0.0, 0.0], &config, elements);
     }
-    let mut columns: [Vec<f64>; 9] = Default::default();
-    let in_loop: Vec<f64> = rows.iter().map(|_| noise(loop_rad)).collect();
+    let in_loop: Vec<f64> = rows.iter().map(|_| loop_rad * rng.sample::<f64, _>(StandardNormal)).collect();
+    let mut noise = NOISE;
+    noise[3] *= 0.1;
+    noise[5] *= 0.1;
+    let mut simulated = Simulated::default();
     for (k, pair) in rows.windows(2).enumerate() {
         let row = &pair[0];
-        let values = [
-            k as f64 * ROW_S,
-            row.accel_x_mps2 + noise(ACCEL_NOISE_MPS2),
-            row.accel_y_mps2 + noise(ACCEL_NOISE_MPS2),
-            row.accel_z_mps2 + noise(ACCEL_NOISE_MPS2),
-            row.vehicle_rate_radps + noise(0.1 * RATE_NOISE_RADPS),
-            row.cross_rate_radps + noise(RATE_NOISE_RADPS),
-            x[THETA] + in_loop[k] + noise(0.1 * PICKOFF_NOISE_RAD),
-            x[MOTOR] + noise(TORQUE_NOISE_NM),
-            x[PHI],
-        ];
-        columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+        simulated.push(sensed(row, x[THETA] + in_loop[k], x[MOTOR]), noise, x[PHI], &mut rng);
         advance(&mut x, [row, &pair[1]], [in_loop[k], in_loop[k + 1]], &config, elements);
     }
-    Simulated { columns }
+    simulated
 }
 
 fn manoeuvre() -> Vec<Row> {

@@ -54,6 +54,20 @@ pub const RATE_NOISE_RADPS: f64 = 2e-4;
 pub const PICKOFF_NOISE_RAD: f64 = 2e-6;
 pub const TORQUE_NOISE_NM: f64 = 1e-5;
 
+/// The same, as the columns follow each other: accelerations, rate, cross rate, theta, motor torque.
+pub const NOISE: [f64; SENSED] = [
+    ACCEL_NOISE_MPS2,
+    ACCEL_NOISE_MPS2,
+    ACCEL_NOISE_MPS2,
+    RATE_NOISE_RADPS,
+    RATE_NOISE_RADPS,
+    PICKOFF_NOISE_RAD,
+    TORQUE_NOISE_NM,
+];
+const SENSED: usize = 7;
+/// Time between two rows [s].
+pub const ROW_S: f64 = 1e-3;
+
 /// One simulated log.
 #[derive(Debug, Clone)]
 pub struct Case {
@@ -201,8 +215,56 @@ pub fn anywhere(seed: u64) -> (Config, Vec<(&'static str, Vec<f64>)>) {
 }
 
 /// The log's columns: time, accelerations, rate, cross rate, theta, motor torque, phi.
+#[derive(Default)]
 pub struct Simulated {
-    pub columns: [Vec<f64>; 9],
+    pub columns: [Vec<f64>; SENSED + 2],
+}
+
+impl Simulated {
+    /// One more row: what the sensors sense, each with its noise, and phi.
+    pub fn push(&mut self, sensed: [f64; SENSED], noise: [f64; SENSED], phi_rad: f64, rng: &mut ChaCha8Rng) {
+        let time_s = self.columns[0].len() as f64 * ROW_S;
+        let noisy = sensed.iter().zip(noise).map(|(value, sigma)| value + sigma * rng.sample::<f64, _>(StandardNormal));
+        let values = std::iter::once(time_s).chain(noisy).chain([phi_rad]);
+        self.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+    }
+
+    /// The pick-off's column through its converter.
+    #[must_use]
+    pub fn converted(mut self) -> Self {
+        for value in &mut self.columns[6] {
+            *value = (*value / PICKOFF_STEP_RAD).round() * PICKOFF_STEP_RAD;
+        }
+        self
+    }
+}
+
+/// Step of a pick-off of 16 bit over +-10 mrad [rad].
+pub const PICKOFF_STEP_RAD: f64 = 20e-3 / 65536.0;
+
+/// What the sensors sense of a row and its state.
+pub fn sensed(row: &Row, theta_rad: f64, motor_torque_nm: f64) -> [f64; SENSED] {
+    [
+        row.accel_x_mps2,
+        row.accel_y_mps2,
+        row.accel_z_mps2,
+        row.vehicle_rate_radps,
+        row.cross_rate_radps,
+        theta_rad,
+        motor_torque_nm,
+    ]
+}
+
+/// A line between two rows.
+pub fn between(from: &Row, to: &Row, share: f64) -> Row {
+    let line = |a: f64, b: f64| a + share * (b - a);
+    Row {
+        accel_x_mps2: line(from.accel_x_mps2, to.accel_x_mps2),
+        accel_y_mps2: line(from.accel_y_mps2, to.accel_y_mps2),
+        accel_z_mps2: line(from.accel_z_mps2, to.accel_z_mps2),
+        vehicle_rate_radps: line(from.vehicle_rate_radps, to.vehicle_rate_radps),
+        ..*from
+    }
 }
 
 pub fn simulate(case: &Case) -> Simulated {
@@ -227,40 +289,14 @@ pub fn simulate_rows(
     for (name, values) in effects {
         plant = plant.with_effect(Effect::from_name(name).expect("known"), values).expect("legal");
     }
-    let mut noise = |sigma: f64| -> f64 { share * sigma * rng.sample::<f64, _>(StandardNormal) };
-    let mut columns: [Vec<f64>; 9] = Default::default();
-    for (k, sample) in plant.run_from(plant.settled(&rows[0]), rows.iter().copied()).enumerate() {
-        let inputs = sample.logged.inputs;
-        let values = [
-            k as f64 * 1e-3,
-            inputs.accel_x_mps2 + noise(ACCEL_NOISE_MPS2),
-            inputs.accel_y_mps2 + noise(ACCEL_NOISE_MPS2),
-            inputs.accel_z_mps2 + noise(ACCEL_NOISE_MPS2),
-            inputs.vehicle_rate_radps + noise(RATE_NOISE_RADPS),
-            inputs.cross_rate_radps + noise(RATE_NOISE_RADPS),
-            sample.logged.gyro_angle_rad + noise(PICKOFF_NOISE_RAD),
-            sample.logged.motor_torque_nm + noise(TORQUE_NOISE_NM),
-            sample.gimbal_angle_rad,
-        ];
-        for (column, value) in columns.iter_mut().zip(values) {
-            column.push(value);
-        }
+    let noise = NOISE.map(|sigma| share * sigma);
+    let mut simulated = Simulated::default();
+    for sample in plant.run_from(plant.settled(&rows[0]), rows.iter().copied()) {
+        let logged = &sample.logged;
+        let sensed = sensed(&logged.inputs, logged.gyro_angle_rad, logged.motor_torque_nm);
+        simulated.push(sensed, noise, sample.gimbal_angle_rad, rng);
     }
-    Simulated { columns }
-}
-
-/// Step of a pick-off of 16 bit over +-10 mrad [rad].
-pub const PICKOFF_STEP_RAD: f64 = 20e-3 / 65536.0;
-
-impl Simulated {
-    /// The pick-off's column through its converter.
-    #[must_use]
-    pub fn converted(mut self) -> Self {
-        for value in &mut self.columns[6] {
-            *value = (*value / PICKOFF_STEP_RAD).round() * PICKOFF_STEP_RAD;
-        }
-        self
-    }
+    simulated
 }
 
 /// The same as a log.

@@ -34,10 +34,10 @@ pub(crate) fn predicted(signal: Signal, prediction: &Prediction) -> &[f64] {
     }
 }
 
-/// Measured less predicted.
+/// Measured less what would be read of the prediction.
 pub(crate) fn residual(record: &Record, prediction: &Prediction) -> Signals {
     let of = |channel: &crate::record::Channel| {
-        channel.values.iter().zip(predicted(channel.signal, prediction)).map(|(a, b)| a - b).collect()
+        channel.values.iter().zip(predicted(channel.signal, prediction)).map(|(a, b)| a - channel.reads(*b)).collect()
     };
     record.channels.iter().map(of).collect()
 }

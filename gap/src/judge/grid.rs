@@ -3,13 +3,12 @@
 
 use std::f64::consts::TAU;
 
-/// Of the gaps between neighbouring angles, the one that is taken for the step; how far from a whole number of steps a gap
-/// may be, and how many steps a gap may have to say so.
+use crate::record::{FEW, are_whole};
+
+/// Of the gaps between neighbouring angles, the one that is taken for the step, and how far from a whole number of steps a gap
+/// may be.
 const SMALL: f64 = 0.1;
 const OFF: f64 = 0.02;
-const FEW: f64 = 8.5;
-/// Share of the gaps that must be whole.
-const WHOLE: f64 = 0.95;
 /// What is less than this share of the noise is how numbers are written.
 const WRITTEN: f64 = 1e-4;
 /// Standard deviations of the noise's power that a step adds to it, to be told; and its least size over the noise: what is
@@ -45,10 +44,10 @@ pub(super) fn multiples_of(theta: &[f64], valid: &[bool], noise_rad: f64) -> Opt
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the gaps")]
     let first = gaps[(SMALL * gaps.len() as f64) as usize];
     gaps.truncate(gaps.partition_point(|gap| *gap < FEW * first));
-    let whole = gaps.iter().filter(|gap| (**gap / first - (**gap / first).round()).abs() < OFF).count() as f64;
-    let steps: f64 = gaps.iter().map(|gap| (gap / first).round()).sum();
+    let over_first: Vec<f64> = gaps.iter().map(|gap| gap / first).collect();
+    let steps: f64 = over_first.iter().map(|over| over.round()).sum();
     let step_rad = gaps.iter().sum::<f64>() / steps;
-    (whole > WHOLE * gaps.len() as f64 && !is_decimal(step_rad)).then_some(step_rad)
+    (are_whole(&over_first, OFF) && !is_decimal(step_rad)).then_some(step_rad)
 }
 
 /// Angles as the steps have them, without what was added behind: the multiples of the step, counted from where most are.

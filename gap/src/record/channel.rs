@@ -2,6 +2,7 @@
 
 use gimbal_log::Column;
 
+use super::converter::Converter;
 use super::rough::rough;
 use super::spikes::spikes;
 
@@ -63,6 +64,8 @@ pub struct Channel {
     pub valid: Vec<bool>,
     /// Lines of hum that were taken out [Hz].
     pub(super) hums_hz: Vec<f64>,
+    /// What writes it, where that has coarse steps.
+    pub(super) converter: Option<Converter>,
 }
 
 impl Channel {
@@ -73,7 +76,13 @@ impl Channel {
                 *value = 0.0;
             }
         }
-        Self { signal, values, valid, hums_hz: Vec::new() }
+        let converter = Converter::of(&values, &valid);
+        Self { signal, values, valid, hums_hz: Vec::new(), converter }
+    }
+
+    /// What it reads on the average.
+    pub(crate) fn reads(&self, value: f64) -> f64 {
+        self.converter.map_or(value, |converter| converter.reads(value))
     }
 
     /// Whether the log has no sample there.

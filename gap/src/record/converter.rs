@@ -1,4 +1,15 @@
 //! Steps of the converters that write a log.
+//!
+//! What a converter of step q reads on the average, of a value x with white noise sigma before it:
+//!
+//! ```text
+//! x + sum_k (-1)^k q / (pi k) e_k sin(2 pi k x / q)        e_k = exp(-2 (pi k sigma / q)^2)
+//! ```
+//!
+//! (Widrow and Kollar, Quantization Noise, Cambridge 2008, chapter on the characteristic function of quantized variables). With its own
+//! noise, over all x, it leaves `(sigma / q)^2 + 1/12 - sum_k (e_k / (pi k))^2 / 2`.
+
+use std::f64::consts::{PI, TAU};
 
 use super::rough::{rough, tails};
 
@@ -8,11 +19,102 @@ const OF_STEP: f64 = 0.3;
 /// that goes evenly.
 const COARSE: f64 = 1.3;
 const EVEN: f64 = 0.05;
-/// How far from a whole number of steps a change may be, how many steps it may have to say so, and share of those that
-/// must be whole.
+/// How far from a whole number of steps a change may be.
 const OFF: f64 = 0.05;
-const FEW: f64 = 8.5;
+/// How many steps a difference may have to say whether it is whole, and share of those that must be.
+pub(crate) const FEW: f64 = 8.5;
 const WHOLE: f64 = 0.95;
+
+/// Whether differences, each over the step, are whole but for so much.
+pub(crate) fn are_whole(over_step: &[f64], off: f64) -> bool {
+    let whole = over_step.iter().filter(|over| (**over - over.round()).abs() < off).count() as f64;
+    whole > WHOLE * over_step.len() as f64
+}
+
+/// Waves of what it reads that count.
+const WAVES: [f64; 2] = [1.0, 2.0];
+/// Least noise before a converter that is counted on, over the step: with less of it one reads by jumps, and no slope leads over
+/// those; and the most that leaves any wave.
+const LEAST: f64 = 0.25;
+const MOST: f64 = 1.0;
+/// How well all samples must be on its steps, where 1 is on the dot.
+const ON_STEPS: f64 = 0.95;
+
+/// A converter whose steps are as coarse as its noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Converter {
+    step: f64,
+    /// A value that it reads.
+    first: f64,
+    /// White noise before it, over the step.
+    noise: f64,
+}
+
+impl Converter {
+    /// That of a series; none where no coarse one writes it.
+    pub(super) fn of(values: &[f64], valid: &[bool]) -> Option<Self> {
+        let changes = few_steps(values, valid).filter(|changes| is_coarse_by(changes, values, valid))?;
+        let (sum, steps) = changes.over_least.iter().fold((0.0, 0.0), |sum, over| (sum.0 + over, sum.1 + over.round()));
+        let step = changes.least * sum / steps;
+        let waves =
+            values.iter().zip(valid).filter(|(_, valid)| **valid).map(|(value, _)| (TAU * value / step).sin_cos());
+        let (sin, cos, count) = waves.fold((0.0, 0.0, 0.0), |sum, (sin, cos)| (sum.0 + sin, sum.1 + cos, sum.2 + 1.0));
+        let leaves = tails(values, valid) / (step * step);
+        (f64::hypot(sin, cos) > ON_STEPS * count).then(|| Self {
+            step,
+            first: f64::atan2(sin, cos) / TAU * step,
+            noise: noise_that_leaves(leaves),
+        })
+    }
+
+    /// What it reads on the average.
+    pub(crate) fn reads(&self, value: f64) -> f64 {
+        let angle = TAU * (value - self.first) / self.step;
+        let wave = |k: f64| (PI * k).cos() * share(k, self.noise) / (PI * k) * (k * angle).sin();
+        value + self.step * WAVES.into_iter().map(wave).sum::<f64>()
+    }
+}
+
+/// What noise leaves of a wave.
+fn share(wave: f64, noise: f64) -> f64 {
+    (-2.0 * (PI * wave * noise).powi(2)).exp()
+}
+
+/// Noise before a converter that leaves so much power behind it, both over the step.
+fn noise_that_leaves(power: f64) -> f64 {
+    let leaves = |noise: f64| {
+        let slow = |k: f64| 0.5 * (share(k, noise) / (PI * k)).powi(2);
+        noise * noise + 1.0 / 12.0 - WAVES.into_iter().map(slow).sum::<f64>()
+    };
+    let (mut low, mut high) = (LEAST, MOST);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if leaves(middle) < power { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Changes of a series from one sample to the next of a few steps each.
+struct Changes {
+    /// The least of all.
+    least: f64,
+    /// Each over that.
+    over_least: Vec<f64>,
+}
+
+fn few_steps(values: &[f64], valid: &[bool]) -> Option<Changes> {
+    let least = least_count(values, valid);
+    let over_least = changes(values, valid).map(|change| change / least).filter(|over| *over < FEW).collect();
+    least.is_finite().then_some(Changes { least, over_least })
+}
+
+/// Whether they are whole steps as coarse as the noise.
+fn is_coarse_by(changes: &Changes, values: &[f64], valid: &[bool]) -> bool {
+    let step = changes.least;
+    are_whole(&changes.over_least, OFF)
+        && COARSE * rough(values, valid) < step
+        && tails(values, valid).sqrt() > EVEN * step
+}
 
 /// Least rms of a converter's noise: differences are silent about it where samples stand on one step most of the time.
 pub(crate) fn least_noise(values: &[f64], valid: &[bool]) -> f64 {
@@ -22,20 +124,20 @@ pub(crate) fn least_noise(values: &[f64], valid: &[bool]) -> f64 {
 
 /// Smallest step between two samples that count.
 pub(super) fn least_count(values: &[f64], valid: &[bool]) -> f64 {
+    changes(values, valid).fold(f64::INFINITY, f64::min)
+}
+
+/// Changes between two samples that count.
+fn changes(values: &[f64], valid: &[bool]) -> impl Iterator<Item = f64> {
     let both = |pair: &(&[f64], &[bool])| pair.1.iter().all(|valid| *valid);
-    let steps = values.windows(2).zip(valid.windows(2)).filter(both).map(|(pair, _)| (pair[1] - pair[0]).abs());
-    steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min)
+    let pairs = values.windows(2).zip(valid.windows(2)).filter(both);
+    pairs.map(|(pair, _)| (pair[1] - pair[0]).abs()).filter(|change| *change > 0.0)
 }
 
 /// Whether a series changes by whole steps as coarse as its noise.
 pub(super) fn is_coarse(values: &[f64]) -> bool {
     let valid = vec![true; values.len()];
-    let step = least_count(values, &valid);
-    let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs() / step);
-    let few: Vec<f64> = changes.filter(|change| *change > 0.0 && *change < FEW).collect();
-    let whole = few.iter().filter(|change| (**change - change.round()).abs() < OFF).count() as f64;
-    let noise = rough(values, &valid);
-    whole > WHOLE * few.len() as f64 && COARSE * noise < step && tails(values, &valid).sqrt() > EVEN * step
+    few_steps(values, &valid).is_some_and(|changes| is_coarse_by(&changes, values, &valid))
 }
 
 #[cfg(test)]
@@ -44,7 +146,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    use super::{is_coarse, least_noise};
+    use super::{Converter, is_coarse, least_noise};
 
     #[test]
     fn a_series_is_coarse_where_its_steps_are_larger_than_its_noise() {
@@ -61,5 +163,19 @@ mod tests {
         let (standing, valid) = (on(0.5), vec![true; 20_000]);
         assert!((least_noise(&standing, &valid) - 0.15).abs() < 1e-12);
         assert!(super::rough(&standing, &valid) < 1e-9);
+    }
+
+    #[test]
+    fn closed_form_a_converter_reads_what_it_writes_on_the_average() {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let (step, sigma) = (2.5, 1.0);
+        let mut read = |value: f64| ((value + sigma * rng.sample::<f64, _>(StandardNormal)) / step).round() * step;
+        let written: Vec<f64> = (0..60_000).map(|k| read(9.0 * (f64::from(k) * 1e-3).sin())).collect();
+        let converter = Converter::of(&written, &vec![true; 60_000]).expect("a coarse one");
+        assert!((converter.step - step).abs() < 1e-9 && (converter.noise - sigma / step).abs() < 0.02, "{converter:?}");
+        for value in [0.1, 0.625, 1.2, 1.9, 4.4] {
+            let mean = (0..1_000_000).map(|_| read(value)).sum::<f64>() / 1e6;
+            assert!((converter.reads(value) - mean).abs() < 0.006, "{value}: {}, {mean}", converter.reads(value));
+        }
     }
 }

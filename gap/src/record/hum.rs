@@ -114,6 +114,8 @@ impl Record {
             let hushed = hushed.get_or_insert_with(|| self.clone());
             hushed.channels[place].values = left.iter().zip(predicted).map(|(left, own)| left + own).collect();
             hushed.channels[place].hums_hz.extend(found.iter().map(|hum| hum.hz));
+            // what is left is on no steps
+            hushed.channels[place].converter = None;
             hushed.notes.extend(found.iter().map(|hum| hum.told(channel.signal.column())));
         }
         hushed

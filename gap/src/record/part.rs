@@ -43,6 +43,7 @@ impl Record {
             values: cut(&channel.values),
             valid: channel.valid[rows.clone()].to_vec(),
             hums_hz: channel.hums_hz.clone(),
+            converter: channel.converter,
         };
         let mut notes = self.notes.clone();
         notes

@@ -9,18 +9,12 @@ use gimbal_gap::diagnose;
 use gimbal_model_file::ModelFile;
 use gimbal_plant::Row;
 use gimbal_servo::Config;
-use rand::RngExt;
-use rand_distr::StandardNormal;
 
-use crate::corpus::{
-    ACCEL_NOISE_MPS2, Excitation, PICKOFF_NOISE_RAD, RATE_NOISE_RADPS, Simulated, TORQUE_NOISE_NM, as_log, drifted,
-    rng, rows,
-};
+use crate::corpus::{Excitation, NOISE, ROW_S, Simulated, as_log, between, drifted, rng, rows, sensed};
 use crate::{names, report};
 
 /// Steps a row, of Heun's method.
 const STEPS: usize = 80;
-const PERIOD_S: f64 = 1e-3;
 /// Displacement of the bristles [rad], and time constant of their damping [s].
 const DISPLACEMENT_RAD: f64 = 2e-6;
 const DAMPING_S: f64 = 1.5e-3;
@@ -71,23 +65,13 @@ impl Bristles {
 
     fn simulate(self, platform: &Config, rows: &[Row], seed: u64) -> Simulated {
         let rng = &mut rng(seed, 3);
-        let mut noise = |sigma: f64| -> f64 { sigma * rng.sample::<f64, _>(StandardNormal) };
-        let mut columns: [Vec<f64>; 9] = Default::default();
+        let mut noise = NOISE;
+        noise[3..5].iter_mut().for_each(|sigma| *sigma *= 0.1);
+        let mut simulated = Simulated::default();
         let mut x = State::default();
-        let step_s = PERIOD_S / STEPS as f64;
+        let step_s = ROW_S / STEPS as f64;
         for (k, row) in rows.iter().enumerate() {
-            let values = [
-                k as f64 * PERIOD_S,
-                row.accel_x_mps2 + noise(ACCEL_NOISE_MPS2),
-                row.accel_y_mps2 + noise(ACCEL_NOISE_MPS2),
-                row.accel_z_mps2 + noise(ACCEL_NOISE_MPS2),
-                row.vehicle_rate_radps + noise(0.1 * RATE_NOISE_RADPS),
-                row.cross_rate_radps + noise(0.1 * RATE_NOISE_RADPS),
-                x[2] + noise(PICKOFF_NOISE_RAD),
-                x[10] + noise(TORQUE_NOISE_NM),
-                x[0],
-            ];
-            columns.iter_mut().zip(values).for_each(|(column, value)| column.push(value));
+            simulated.push(sensed(row, x[2], x[10]), noise, x[0], rng);
             let Some(next) = rows.get(k + 1) else { break };
             for step in 0..STEPS {
                 let at = |part: usize| between(row, next, part as f64 / STEPS as f64);
@@ -97,19 +81,7 @@ impl Bristles {
                 x = std::array::from_fn(|i| x[i] + 0.5 * step_s * (slope[i] + end[i]));
             }
         }
-        Simulated { columns }
-    }
-}
-
-/// A line between two rows.
-fn between(from: &Row, to: &Row, share: f64) -> Row {
-    let line = |a: f64, b: f64| a + share * (b - a);
-    Row {
-        accel_x_mps2: line(from.accel_x_mps2, to.accel_x_mps2),
-        accel_y_mps2: line(from.accel_y_mps2, to.accel_y_mps2),
-        accel_z_mps2: line(from.accel_z_mps2, to.accel_z_mps2),
-        vehicle_rate_radps: line(from.vehicle_rate_radps, to.vehicle_rate_radps),
-        ..*from
+        simulated
     }
 }
 

@@ -3,10 +3,12 @@
 use gimbal_gap::diagnose;
 use gimbal_log::Column;
 use gimbal_model_file::ModelFile;
+use gimbal_plant::Row;
+use gimbal_servo::Config;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
-use crate::corpus::{self, ACCEL_NOISE_MPS2, PICKOFF_NOISE_RAD, RATE_NOISE_RADPS};
+use crate::corpus::{self, NOISE, Simulated};
 use crate::corpus::{Case, Excitation, PICKOFF_STEP_RAD, as_log, simulate};
 use crate::{LEAST, SECONDS, log_with, names, of_columns, report};
 
@@ -102,22 +104,36 @@ fn steps_of_an_angle_whose_rate_has_them_too_are_those_of_what_writes_the_log() 
         drift: 0.6,
         noise: 1.0,
     };
-    let on_steps = |step: &dyn Fn(usize) -> Option<f64>| {
-        let mut simulated = simulate(&case);
-        for (place, values) in simulated.columns.iter_mut().enumerate() {
-            let Some(step) = step(place) else { continue };
-            for value in values {
-                *value = (*value / step).round() * step;
-            }
-        }
-        names(&diagnose(&of_columns(&as_log(&simulated), &LEAST), &ModelFile::default()))
+    let of = |places: &[usize]| {
+        let log = as_log(&on_steps(simulate(&case), 2.5, places));
+        names(&diagnose(&of_columns(&log, &LEAST), &ModelFile::default()))
     };
-    let of_column = |place: usize| match place {
-        1..=3 => Some(2.5 * ACCEL_NOISE_MPS2),
-        4 => Some(2.5 * RATE_NOISE_RADPS),
-        6 => Some(2.5 * PICKOFF_NOISE_RAD),
-        _ => None,
+    assert_eq!(of(&[1, 2, 3, 4, 6]), Vec::<&str>::new());
+    assert_eq!(of(&[6]), ["pickoff_quantisation"]);
+}
+
+/// Angles that stay where they are for long are read a little off, each as it stands between two steps.
+#[test]
+fn steps_that_are_as_coarse_as_the_noise_are_no_gap() {
+    let swings = |k: u32| Row {
+        accel_x_mps2: 6.9,
+        accel_y_mps2: 6.9,
+        vehicle_rate_radps: 0.5 * (1e-3 * f64::from(k)).sin(),
+        ..Row::default()
     };
-    assert_eq!(on_steps(&of_column), Vec::<&str>::new());
-    assert_eq!(on_steps(&|place| of_column(place).filter(|_| place == 6)), ["pickoff_quantisation"]);
+    let rows: Vec<Row> = (0..30_000).map(swings).collect();
+    let platform = corpus::drifted(&Config::consistent(), 0.6, 23);
+    let simulated = corpus::simulate_rows(&rows, &platform, &[], 1.0, &mut corpus::rng(23, 3));
+    let log = as_log(&on_steps(simulated, 4.0, &[1, 2, 3, 4, 5, 6, 7]));
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:?}", names(&diagnosis));
+}
+
+/// Columns through converters whose steps are so many noises.
+fn on_steps(mut simulated: Simulated, noises: f64, places: &[usize]) -> Simulated {
+    for &place in places {
+        let step = noises * NOISE[place - 1];
+        simulated.columns[place].iter_mut().for_each(|value| *value = (*value / step).round() * step);
+    }
+    simulated
 }
