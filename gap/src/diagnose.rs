@@ -5,8 +5,8 @@ use gimbal_model_file::ModelFile;
 
 use crate::fit::{Fit, Known, Tried, without};
 use crate::judge::{
-    Correlation, CurvePoint, Decision, Detectable, Portrait, READ_OFF, Shrink, Spread, Verdict, Yardstick, bounds_hit,
-    correlations, curve, decide, detectable, free_running, one_step, portrait, shrink,
+    Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Spread, Verdict, Yardstick, bounds_hit,
+    contradicted, correlations, curve, decide, detectable, free_running, one_step, portrait, shrink,
 };
 use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
@@ -21,11 +21,6 @@ const ASTRAY: f64 = 1.5;
 /// Rows in which a beginning that is not the platform's shows most, and how far beyond chance [s], [standard deviations].
 const FIRST_S: f64 = 0.1;
 const FIRST_STANDS_OUT: f64 = 6.0;
-
-/// A residual this many times the white noise of every sensor is no noise, however slow.
-const NO_NOISE: f64 = 25.0;
-/// The same where the effects named take nothing away.
-const NOTHING_GONE: f64 = 10.0;
 
 /// Everything that a report says about one log.
 #[derive(Debug, Clone)]
@@ -283,32 +278,6 @@ fn begins_wrong(whole @ Settled { problem, search, .. }: &Settled) -> bool {
     let stands_out = (first / elsewhere - values) / (2.0 * values).sqrt() > FIRST_STANDS_OUT;
     let (first, values) = square_of(BEGINNING_S);
     stands_out || astray(whole) && first - values > 0.5 * (closest.square - count)
-}
-
-/// Takes back a verdict that the signals speak against: slow noise may be estimated as high as a gap.
-fn contradicted(decision: &mut Decision, shrink: &Shrink) -> bool {
-    let beyond = |times: f64| shrink.signals.iter().all(|signal| signal.fitted > times * signal.noise_floor);
-    let nothing_gone = shrink.signals.iter().all(|signal| signal.ci95_percent[0] <= 0.0);
-    let contradicted = match decision.verdict {
-        Verdict::NoGap => beyond(NO_NOISE),
-        // what the samples show by themselves is in the prediction from the first
-        _ => decision.found.iter().any(|own| !READ_OFF.contains(&own.effect)) && nothing_gone && beyond(NOTHING_GONE),
-    };
-    if contradicted && !shrink.signals.is_empty() {
-        let least = shrink.signals.iter().map(|signal| signal.fitted / signal.noise_floor).fold(f64::MAX, f64::min);
-        decision.notes.push(format!(
-            "what is left is at least {least:.0} times the white noise of every sensor, and nothing of the library takes it away"
-        ));
-        decision.verdict = Verdict::Unexplained;
-        decision.found.clear();
-        decision.chosen = None;
-        let unknown = decision.unknown_probability.max(0.9);
-        let rest = (1.0 - unknown) / (1.0 - decision.unknown_probability).max(1e-9);
-        decision.ranking.iter_mut().for_each(|set| set.probability *= rest);
-        decision.unknown_probability = unknown;
-        decision.alternatives = decision.others();
-    }
-    contradicted
 }
 
 fn refused(record: Record) -> Diagnosis {

@@ -3,6 +3,7 @@
 mod against;
 mod closed_loop;
 mod comb;
+mod contradicted;
 mod correlation;
 mod curve;
 mod decide;
@@ -32,6 +33,7 @@ mod weigh;
 pub(crate) use against::{HELPS, NEVER, at_a_bound, beyond};
 pub(crate) use closed_loop::in_step;
 pub use closed_loop::{Yardstick, free_running, one_step};
+pub(crate) use contradicted::contradicted;
 pub use correlation::{Correlation, bounds_hit, correlations};
 pub use curve::{CurvePoint, curve};
 pub use decide::{Decision, Found, Verdict, decide};
