@@ -21,14 +21,16 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
         .enumerate()
         .take(LOOKED_AT)
         .flat_map(|(index, fit)| {
-            let others = [straightened, late_otherwise, levelled].into_iter().filter_map(|of| of(problem, fit));
-            lesser(fit, index == 0).chain(others).map(move |less| (fit, less))
+            let others = [straightened, levelled].into_iter().filter_map(|of| of(problem, fit));
+            let near = lesser(fit, index == 0).chain(others).map(move |less| (fit, less, false));
+            near.chain(late_otherwise(problem, fit).map(move |less| (fit, less, true)))
         })
         .collect::<Vec<_>>()
         .into_par_iter()
-        .map(|(from, (set, values))| {
+        .map(|(from, (set, values), is_far)| {
             let from = beginning(problem, from, &set, &values);
-            let mut fit = refine(problem, &set, &values, Some(&from), Effort::Quick);
+            let quick = || refine(problem, &set, &values, Some(&from), Effort::Quick);
+            let mut fit = if is_far { from_afar(problem, &set, &values, &from) } else { quick() };
             if fit.cost() < NEAR * least {
                 polish(problem, &mut fit);
             }
@@ -41,6 +43,15 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
             fits.push(fit);
         }
     }
+}
+
+/// The better of two fits to their ends, from a beginning and from the same with the nominal parameters as they should be: where
+/// these have made up for the rest, few steps do not lead back.
+fn from_afar(problem: &Problem, set: &Set, values: &[Vec<f64>], from: &Fit) -> Fit {
+    let mut nominal = from.clone();
+    nominal.shifts.fill(0.0);
+    let [fit, other] = [from, &nominal].map(|from| refine(problem, set, values, Some(from), Effort::Thorough));
+    if other.volume.is_finite() && other.cost() < fit.cost() { other } else { fit }
 }
 
 /// A fit with nominal parameters that another set does not release inside of their tolerances, and with those that it
