@@ -37,6 +37,8 @@ const WARY: f64 = 1.6;
 const ROUGH: f64 = 10.0 * TURNING.left_over;
 /// Probability of something unknown beside it.
 const SHOWN: f64 = 0.05;
+/// Fuller sets that are looked at where one leaves what stands out.
+const FULLER: usize = 3;
 /// Share of a gap that an effect's formulation may leave.
 const FORMULATION_LEAVES: f64 = 0.05;
 
@@ -177,6 +179,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     // a gap that torques of no effect show, or the pick-off's steps, is none that the effect has to show
     let likely = |set: &Weighed| if set.acts_on_float() { 0.0 } else { set.nats - set.rare };
     let best = worthy.or_else(|| best(&sets, likely).filter(|_| shown()));
+    let best = best.map(|best| cleared(problem, search, &limits, best, &probabilities.no_less_likely(&sets, best)));
     let chosen = best.and_then(|set| set.fit);
     let before = left_over(problem, &search.null.residual);
     let after = chosen.map_or(before, |index| left_over(problem, &search.fits[index].residual));
@@ -233,6 +236,30 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
     let step_rad = steps.filter(|steps| steps.of_pickoff).map(|steps| steps.step_rad);
     direct(problem, step_rad, tolerance, &mut decision);
     decision
+}
+
+/// A set, or where it leaves what stands out the closest of a few fuller ones that leave nothing of it.
+fn cleared<'a>(
+    problem: &Problem,
+    search: &Search,
+    limits: &Limits,
+    set: &'a Weighed,
+    fuller: &[&'a Weighed],
+) -> &'a Weighed {
+    let fit = |set: &Weighed| set.fit.map(|index| &search.fits[index]);
+    let leaves = |set: &Weighed| {
+        fit(set).is_some_and(|fit| {
+            left_over(problem, &fit.residual) > limits.left_over + limits.left_over_scale
+                || strongest(&strangers(problem, fit)) > limits.strange + limits.strange_scale
+        })
+    };
+    if fuller.is_empty() || !leaves(set) || fit(set).is_some_and(|fit| steps(problem, fit).is_some()) {
+        return set;
+    }
+    let mut fuller = fuller.to_vec();
+    let cost = |set: &Weighed| fit(set).map_or(f64::INFINITY, Fit::cost);
+    fuller.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    fuller.into_iter().take(FULLER).find(|set| !leaves(set)).unwrap_or(set)
 }
 
 /// A torque on the float turns the platform as an error of the logged rate seems to: `T / H`.

@@ -15,6 +15,8 @@ const CHANCE: f64 = 1.0;
 const LIKELIER: f64 = 0.5;
 /// How much likelier than that one the likeliest of them must be.
 const THAN_ONE: f64 = 1.5;
+/// How likely one must be over another to be as likely.
+const AS_LIKELY: f64 = 0.9;
 /// Probability of there being nothing from which on down there is something.
 const HARDLY: f64 = 0.1;
 
@@ -70,10 +72,23 @@ impl Probabilities {
             sets.iter().zip(&self.sets).filter(fitted)
         };
         let together: f64 = fuller().map(|(_, probability)| probability).sum();
-        let own = sets.iter().zip(&self.sets).find(|(set, _)| set.effects == best.effects).map_or(0.0, |own| *own.1);
+        let own = self.of(sets, best);
         let likeliest = fuller().max_by(|a, b| a.1.total_cmp(b.1));
         let likelier = |(_, probability): &(&Weighed, &f64)| together > LIKELIER && **probability > THAN_ONE * own;
         likeliest.filter(likelier).map_or(best, |(set, _)| set)
+    }
+
+    fn of(&self, sets: &[Weighed], one: &Weighed) -> f64 {
+        sets.iter().zip(&self.sets).find(|(set, _)| set.effects == one.effects).map_or(0.0, |own| *own.1)
+    }
+
+    /// The sets that were fitted, hold one and another effect, and are as likely as that one.
+    pub(crate) fn no_less_likely<'a>(&self, sets: &'a [Weighed], one: &Weighed) -> Vec<&'a Weighed> {
+        let own = self.of(sets, one);
+        let likely = |(set, probability): &(&Weighed, &f64)| {
+            set.fit.is_some() && is_part(&one.effects, &set.effects) && **probability > AS_LIKELY * own
+        };
+        sets.iter().zip(&self.sets).filter(likely).map(|(set, _)| set).collect()
     }
 
     /// The likeliest set, where there being nothing is improbable though no set brings what it has to by itself; a torque on

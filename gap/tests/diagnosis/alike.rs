@@ -2,7 +2,7 @@
 
 use gimbal_gap::diagnose;
 use gimbal_gap::fit::{Effort, Problem, Set, refine};
-use gimbal_gap::judge::Spread;
+use gimbal_gap::judge::{Spread, Verdict};
 use gimbal_gap::record::Record;
 use gimbal_model_file::ModelFile;
 
@@ -33,4 +33,19 @@ fn how_well_a_value_is_known_does_not_hang_on_the_steps_of_the_sensitivities() {
     problem.nuisances.iter_mut().for_each(|own| own.step *= 0.1);
     // a lag, a delay and a pure delay nearly stand for each other
     assert!((coarse_s / error_s(&problem) - 1.0).abs() < 0.1, "{coarse_s:e} {:e}", error_s(&problem));
+}
+
+/// Under a large effect three are alike that each take away what is left: none is sure, and nothing is left unexplained.
+#[test]
+fn what_any_of_a_few_effects_takes_away_is_not_left_beside_a_large_one() {
+    let effects = [("torque_ripple", vec![4e-3, 8.0, 0.4]), ("pickoff_scale", vec![0.12])];
+    let diagnosis = diagnose(&log_with(Excitation::RateTable, &effects), &ModelFile::default());
+    let decision = diagnosis.decision.as_ref().expect("a decision");
+    assert_eq!(decision.verdict, Verdict::CannotTell, "{:?}", decision.strangers.first());
+    let told = decision.alternatives.iter().map(|set| set.effects.clone()).chain([names(&diagnosis)]);
+    assert!(
+        told.into_iter().any(|set| set.len() == 2 && set.contains(&"pickoff_scale")),
+        "{:?}",
+        decision.alternatives
+    );
 }
