@@ -103,7 +103,7 @@ pub fn rows(excitation: Excitation, seconds: f64, seed: u64) -> Vec<Row> {
     let rng = &mut rng(seed, 1);
     let g = 9.806_65;
     let count = (seconds * 1000.0) as usize;
-    let times = (0..=count).map(|k| k as f64 * 1e-3);
+    let times = (0..=count).map(|k| k as f64 * ROW_S);
     match excitation {
         Excitation::RateTable => {
             let rate = 0.03 + 0.3 * rng.random::<f64>();
@@ -313,7 +313,7 @@ pub fn as_log(simulated: &Simulated) -> gimbal_log::Log {
         Column::MotorTorque,
     ];
     let mut log = gimbal_log::Log::default();
-    log.time.period_s = 1e-3;
+    log.time.period_s = ROW_S;
     for (column, values) in columns.into_iter().zip(&simulated.columns) {
         log.set(column, values.clone());
     }

@@ -59,6 +59,11 @@ impl Limits {
         let wary = if problem.turns_mostly { WARY } else { caution(problem) };
         Self { strange: wary * limits.strange, ..limits }
     }
+
+    /// Whether what is left stands out beyond them, or torques of no effect take more.
+    pub(crate) fn are_passed(&self, left_over: f64, strange: f64) -> bool {
+        left_over > self.left_over + self.left_over_scale || strange > self.strange + self.strange_scale
+    }
 }
 
 /// What it comes to.
@@ -216,9 +221,7 @@ pub fn decide(problem: &Problem, search: &Search, tolerance: &Tolerance) -> Deci
             decision.found.clear();
             decision.chosen = None;
             Verdict::Unexplained
-        } else if !stepped
-            && (after > limits.left_over + limits.left_over_scale || strange > limits.strange + limits.strange_scale)
-        {
+        } else if !stepped && limits.are_passed(after, strange) {
             Verdict::PartlyExplained
         } else if decision.rivals(&best.effects).is_empty() {
             Verdict::Explained
@@ -249,8 +252,7 @@ fn cleared<'a>(
     let fit = |set: &Weighed| set.fit.map(|index| &search.fits[index]);
     let leaves = |set: &Weighed| {
         fit(set).is_some_and(|fit| {
-            left_over(problem, &fit.residual) > limits.left_over + limits.left_over_scale
-                || strongest(&strangers(problem, fit)) > limits.strange + limits.strange_scale
+            limits.are_passed(left_over(problem, &fit.residual), strongest(&strangers(problem, fit)))
         })
     };
     if fuller.is_empty() || !leaves(set) || fit(set).is_some_and(|fit| steps(problem, fit).is_some()) {

@@ -1,9 +1,7 @@
 //! `pickoff_quantisation` as a converter makes it of an angle that has its noise already: every sample is a multiple of the
 //! step, however fine that is. What is on a grid by how many digits were written is not told.
 
-use std::f64::consts::TAU;
-
-use crate::record::{FEW, are_whole};
+use crate::record::{phase, whole_step};
 
 /// Of the gaps between neighbouring angles, the one that is taken for the step, and how far from a whole number of steps a gap
 /// may be.
@@ -43,19 +41,12 @@ pub(super) fn multiples_of(theta: &[f64], valid: &[bool], noise_rad: f64) -> Opt
     }
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the gaps")]
     let first = gaps[(SMALL * gaps.len() as f64) as usize];
-    gaps.truncate(gaps.partition_point(|gap| *gap < FEW * first));
-    let over_first: Vec<f64> = gaps.iter().map(|gap| gap / first).collect();
-    let steps: f64 = over_first.iter().map(|over| over.round()).sum();
-    let step_rad = gaps.iter().sum::<f64>() / steps;
-    (are_whole(&over_first, OFF) && !is_decimal(step_rad)).then_some(step_rad)
+    whole_step(gaps.into_iter(), first, OFF).filter(|step_rad| !is_decimal(*step_rad))
 }
 
 /// Angles as the steps have them, without what was added behind: the multiples of the step, counted from where most are.
 pub(super) fn on_grid(theta: &[f64], valid: &[bool], step_rad: f64) -> Vec<f64> {
-    let waves =
-        theta.iter().zip(valid).filter(|(_, valid)| **valid).map(|(angle, _)| (TAU * angle / step_rad).sin_cos());
-    let (sin, cos) = waves.fold((0.0, 0.0), |sum, (sin, cos)| (sum.0 + sin, sum.1 + cos));
-    let first_rad = f64::atan2(sin, cos) / TAU * step_rad;
+    let (first_rad, _) = phase(theta, valid, step_rad);
     theta.iter().map(|angle| first_rad + ((angle - first_rad) / step_rad).round() * step_rad).collect()
 }
 

@@ -47,9 +47,7 @@ impl Left {
     }
 
     fn tells(&self) -> bool {
-        let limits = &self.limits;
-        self.stands_out[1] > limits.left_over + limits.left_over_scale
-            || self.strangest() > limits.strange + limits.strange_scale
+        self.limits.are_passed(self.stands_out[1], self.strangest())
     }
 }
 

@@ -22,14 +22,8 @@ const EVEN: f64 = 0.05;
 /// How far from a whole number of steps a change may be.
 const OFF: f64 = 0.05;
 /// How many steps a difference may have to say whether it is whole, and share of those that must be.
-pub(crate) const FEW: f64 = 8.5;
+const FEW: f64 = 8.5;
 const WHOLE: f64 = 0.95;
-
-/// Whether differences, each over the step, are whole but for so much.
-pub(crate) fn are_whole(over_step: &[f64], off: f64) -> bool {
-    let whole = over_step.iter().filter(|over| (**over - over.round()).abs() < off).count() as f64;
-    whole > WHOLE * over_step.len() as f64
-}
 
 /// Waves of what it reads that count.
 const WAVES: [f64; 2] = [1.0, 2.0];
@@ -53,18 +47,11 @@ pub(crate) struct Converter {
 impl Converter {
     /// That of a series; none where no coarse one writes it.
     pub(super) fn of(values: &[f64], valid: &[bool]) -> Option<Self> {
-        let changes = few_steps(values, valid).filter(|changes| is_coarse_by(changes, values, valid))?;
-        let (sum, steps) = changes.over_least.iter().fold((0.0, 0.0), |sum, over| (sum.0 + over, sum.1 + over.round()));
-        let step = changes.least * sum / steps;
-        let waves =
-            values.iter().zip(valid).filter(|(_, valid)| **valid).map(|(value, _)| (TAU * value / step).sin_cos());
-        let (sin, cos, count) = waves.fold((0.0, 0.0, 0.0), |sum, (sin, cos)| (sum.0 + sin, sum.1 + cos, sum.2 + 1.0));
+        let step = coarse_step(values, valid)?;
+        let (first, on_steps) = phase(values, valid, step);
         let noise = noise_that_leaves(tails(values, valid) / (step * step));
-        (f64::hypot(sin, cos) > ON_STEPS * count).then(|| Self {
-            step,
-            first: f64::atan2(sin, cos) / TAU * step,
-            heights: WAVES.map(|k| step * (PI * k).cos() * share(k, noise) / (PI * k)),
-        })
+        let height = |k: f64| step * (PI * k).cos() * share(k, noise) / (PI * k);
+        (on_steps > ON_STEPS).then(|| Self { step, first, heights: WAVES.map(height) })
     }
 
     /// What it reads on the average.
@@ -94,26 +81,28 @@ fn noise_that_leaves(power: f64) -> f64 {
     low
 }
 
-/// Changes of a series from one sample to the next of a few steps each.
-struct Changes {
-    /// The least of all.
-    least: f64,
-    /// Each over that.
-    over_least: Vec<f64>,
+/// The step of which nearly all differences of a few steps are whole multiples, but for so much, from a first guess of it; none
+/// where they are not.
+pub(crate) fn whole_step(differences: impl Iterator<Item = f64>, first: f64, off: f64) -> Option<f64> {
+    let few: Vec<f64> = differences.filter(|difference| *difference < FEW * first).collect();
+    let steps = || few.iter().map(|difference| difference / first);
+    let whole = steps().filter(|over| (over - over.round()).abs() < off).count() as f64;
+    (whole > WHOLE * few.len() as f64).then(|| few.iter().sum::<f64>() / steps().map(f64::round).sum::<f64>())
 }
 
-fn few_steps(values: &[f64], valid: &[bool]) -> Option<Changes> {
+/// The value on a grid of steps that samples lie about, and how well they lie on it, where 1 is on the dot.
+pub(crate) fn phase(values: &[f64], valid: &[bool], step: f64) -> (f64, f64) {
+    let counted = values.iter().zip(valid).filter(|(_, valid)| **valid);
+    let waves = counted.map(|(value, _)| (TAU * value / step).sin_cos());
+    let (sin, cos, count) = waves.fold((0.0, 0.0, 0.0), |sum, (sin, cos)| (sum.0 + sin, sum.1 + cos, sum.2 + 1.0));
+    (f64::atan2(sin, cos) / TAU * step, f64::hypot(sin, cos) / count)
+}
+
+/// The step of which a series changes by whole ones, where that is as coarse as its noise.
+fn coarse_step(values: &[f64], valid: &[bool]) -> Option<f64> {
     let least = least_count(values, valid);
-    let over_least = changes(values, valid).map(|change| change / least).filter(|over| *over < FEW).collect();
-    least.is_finite().then_some(Changes { least, over_least })
-}
-
-/// Whether they are whole steps as coarse as the noise.
-fn is_coarse_by(changes: &Changes, values: &[f64], valid: &[bool]) -> bool {
-    let step = changes.least;
-    are_whole(&changes.over_least, OFF)
-        && COARSE * rough(values, valid) < step
-        && tails(values, valid).sqrt() > EVEN * step
+    let step = whole_step(changes(values, valid), least, OFF)?;
+    (COARSE * rough(values, valid) < least && tails(values, valid).sqrt() > EVEN * least).then_some(step)
 }
 
 /// Least rms of a converter's noise: differences are silent about it where samples stand on one step most of the time.
@@ -136,8 +125,7 @@ fn changes(values: &[f64], valid: &[bool]) -> impl Iterator<Item = f64> {
 
 /// Whether a series changes by whole steps as coarse as its noise.
 pub(super) fn is_coarse(values: &[f64]) -> bool {
-    let valid = vec![true; values.len()];
-    few_steps(values, &valid).is_some_and(|changes| is_coarse_by(&changes, values, &valid))
+    coarse_step(values, &vec![true; values.len()]).is_some()
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ use self::converter::is_coarse;
 use self::grid::{Grid, filled};
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
-pub(crate) use converter::{FEW, are_whole, least_noise};
+pub(crate) use converter::{least_noise, phase, whole_step};
 pub use faults::{Data, faults};
 pub use force_noise::ForceNoise;
 pub(crate) use force_noise::slow;
