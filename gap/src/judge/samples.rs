@@ -51,7 +51,7 @@ pub(super) fn steps(problem: &Problem, fit: &Fit) -> Option<Steps> {
         let seen = step_rad > FINEST * noise_rad && loop_sees_hidden(problem, fit, step_rad);
         return seen.then_some(Steps { step_rad, of_pickoff: true });
     }
-    let by_log = || problem.record.is_coarse || grid::is_the_logs(step_rad, noise_rad);
+    let by_log = || problem.record.is_rounded || grid::is_the_logs(step_rad, noise_rad);
     let of_pickoff = loop_sees(problem, fit, step_rad).unwrap_or_else(|| !by_log());
     Some(Steps { step_rad, of_pickoff })
 }

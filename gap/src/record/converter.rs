@@ -16,8 +16,9 @@ use super::rough::{rough, tails};
 /// Noise of a converter, over its step: `1 / sqrt(12)`.
 const OF_STEP: f64 = 0.3;
 /// A step from so many of the noise on is coarse; with less than this share of it from row to row it is the series itself
-/// that goes evenly.
+/// that goes evenly. From fewer noises on it tells that what writes the log rounds.
 const COARSE: f64 = 1.3;
+const ROUNDED: f64 = 0.5;
 const EVEN: f64 = 0.05;
 /// How far from a whole number of steps a change may be.
 const OFF: f64 = 0.05;
@@ -47,7 +48,7 @@ pub(crate) struct Converter {
 impl Converter {
     /// That of a series; none where no coarse one writes it.
     pub(super) fn of(values: &[f64], valid: &[bool]) -> Option<Self> {
-        let step = coarse_step(values, valid)?;
+        let step = step_of(values, valid, COARSE)?;
         let (first, on_steps) = phase(values, valid, step);
         let noise = noise_that_leaves(tails(values, valid) / (step * step));
         let height = |k: f64| step * (PI * k).cos() * share(k, noise) / (PI * k);
@@ -98,11 +99,11 @@ pub(crate) fn phase(values: &[f64], valid: &[bool], step: f64) -> (f64, f64) {
     (f64::atan2(sin, cos) / TAU * step, f64::hypot(sin, cos) / count)
 }
 
-/// The step of which a series changes by whole ones, where that is as coarse as its noise.
-fn coarse_step(values: &[f64], valid: &[bool]) -> Option<f64> {
+/// The step of which a series changes by whole ones, where that is more than so many of its noise.
+fn step_of(values: &[f64], valid: &[bool], noises: f64) -> Option<f64> {
     let least = least_count(values, valid);
     let step = whole_step(changes(values, valid), least, OFF)?;
-    (COARSE * rough(values, valid) < least && tails(values, valid).sqrt() > EVEN * least).then_some(step)
+    (noises * rough(values, valid) < least && tails(values, valid).sqrt() > EVEN * least).then_some(step)
 }
 
 /// Least rms of a converter's noise: differences are silent about it where samples stand on one step most of the time.
@@ -123,9 +124,9 @@ fn changes(values: &[f64], valid: &[bool]) -> impl Iterator<Item = f64> {
     pairs.map(|(pair, _)| (pair[1] - pair[0]).abs()).filter(|change| *change > 0.0)
 }
 
-/// Whether a series changes by whole steps as coarse as its noise.
-pub(super) fn is_coarse(values: &[f64]) -> bool {
-    coarse_step(values, &vec![true; values.len()]).is_some()
+/// Whether a series changes by whole steps that are no small part of its noise.
+pub(super) fn is_rounded(values: &[f64]) -> bool {
+    step_of(values, &vec![true; values.len()], ROUNDED).is_some()
 }
 
 #[cfg(test)]
@@ -134,18 +135,18 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    use super::{Converter, is_coarse, least_noise};
+    use super::{Converter, is_rounded, least_noise};
 
     #[test]
-    fn a_series_is_coarse_where_its_steps_are_larger_than_its_noise() {
+    fn a_series_is_rounded_where_its_steps_are_no_small_part_of_its_noise() {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
         let noisy: Vec<f64> =
             (0..20_000).map(|k| (f64::from(k) * 1e-3).sin() + 1e-3 * rng.sample::<f64, _>(StandardNormal)).collect();
         let on = |step: f64| -> Vec<f64> { noisy.iter().map(|value| (value / step).round() * step).collect() };
         let even: Vec<f64> = (0..20_000).map(|k| 0.25 * f64::from(k)).collect();
-        assert!(is_coarse(&on(2.5e-3)));
+        assert!(is_rounded(&on(2.5e-3)) && is_rounded(&on(7e-4)));
         for other in [noisy.clone(), on(4e-4), even, vec![1.0; 20_000]] {
-            assert!(!is_coarse(&other));
+            assert!(!is_rounded(&other));
         }
         // a noise far below the step leaves the step's own
         let (standing, valid) = (on(0.5), vec![true; 20_000]);

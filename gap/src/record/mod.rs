@@ -20,7 +20,7 @@ use std::ops::Range;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
-use self::converter::is_coarse;
+use self::converter::is_rounded;
 use self::grid::{Grid, filled};
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
@@ -65,8 +65,8 @@ pub struct Record {
     away_from_stop: Option<Range<usize>>,
     /// Runs of rows that count after it, each to the next.
     after_stops: Vec<Range<usize>>,
-    /// Whether the rate changes in steps as coarse as its noise: what writes the log makes such.
-    pub(crate) is_coarse: bool,
+    /// Whether the rate changes in steps that are no small part of its noise: what writes the log makes such.
+    pub(crate) is_rounded: bool,
     /// Noise of the rate.
     pub rate_noise: RateNoise,
     /// Noise of the specific force along each axis.
@@ -146,7 +146,7 @@ impl Record {
             notes.extend(channel.without_spikes());
             channels.push(channel);
         }
-        let is_coarse = is_coarse(&inputs.rate_radps);
+        let is_rounded = is_rounded(&inputs.rate_radps);
         let rate_noise = RateNoise::logged(&inputs.rate_radps);
         let force_noise = inputs.accel_mps2.each_ref().map(|axis| ForceNoise::logged(axis));
         let mut record = Self {
@@ -156,7 +156,7 @@ impl Record {
             plateau_rad: None,
             away_from_stop: None,
             after_stops: Vec::new(),
-            is_coarse,
+            is_rounded,
             rate_noise,
             force_noise,
             faults,

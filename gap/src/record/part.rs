@@ -55,7 +55,7 @@ impl Record {
             plateau_rad: self.plateau_rad,
             away_from_stop: None,
             after_stops: Vec::new(),
-            is_coarse: self.is_coarse,
+            is_rounded: self.is_rounded,
             rate_noise: self.rate_noise.clone(),
             force_noise: self.force_noise,
             faults: Vec::new(),

@@ -13,7 +13,7 @@ use super::lanes::Lanes;
 use super::law::Law;
 use super::now::Now;
 use super::running::Running;
-use super::sprung::ELEMENTS;
+use super::sprung::{ELEMENTS, Flow};
 use super::{Begin, Inputs, Prediction, Push};
 
 /// How a full step is divided: where nothing turns around, where friction turns around slowly, and where it turns
@@ -36,6 +36,8 @@ pub(super) struct Machine<'a, const N: usize, const L: usize> {
     free: [Box<Step<N, L>>; 3],
     held: OnceCell<[Box<Step<N, L>>; 3]>,
     full_steps: u32,
+    /// What a step of each division does to springs before the friction, where there are some.
+    flows: [Option<[Flow; 3]>; L],
     command: [Lanes<L>; N],
     /// Each by itself; none where there is one.
     alone: Vec<Machine<'a, N, 1>>,
@@ -46,13 +48,16 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
     /// With the steps and the vehicle rates of each.
     pub(super) fn new(steps: [&'a Steps<'a, N>; L], inputs: &'a Inputs, rates: [&'a [f64]; L]) -> Self {
         let alone = |lane: usize| Machine::new([steps[lane]], inputs, [rates[lane]]);
+        let (law, full_steps) = (Law::new(steps.map(|own| own.physics)), steps[0].full_steps);
+        let steps_s = DIVISIONS.map(|parts| inputs.period_s / f64::from(full_steps * parts));
         Self {
             inputs,
             rates,
-            law: Law::new(steps.map(|own| own.physics)),
+            flows: std::array::from_fn(|lane| law.flows(lane, steps_s)),
+            law,
             free: [0, 1, 2].map(|division| Box::new(Step::beside(steps.map(|own| &own.free[division])))),
             held: OnceCell::new(),
-            full_steps: steps[0].full_steps,
+            full_steps,
             command: std::array::from_fn(|state| Lanes::each(|lane| steps[lane].command[state])),
             alone: if L > 1 { (0..L).map(alone).collect() } else { Vec::new() },
             steps,

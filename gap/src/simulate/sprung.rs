@@ -28,6 +28,22 @@ const CLOSE: f64 = 1e-14;
 /// Force of each spring, over the one at which it yields.
 pub(super) type Forces = [f64; ELEMENTS];
 
+/// What a step of one length does to each spring, at one slip rate.
+pub(super) struct Flow {
+    slip_radps: f64,
+    /// Share of its force that is gone, and the mean of that over the step.
+    gone: Forces,
+    mean: Forces,
+}
+
+impl Flow {
+    pub(super) fn new([along_rad, slip_radps]: [f64; 2], step_s: f64) -> Self {
+        let flow = YIELDS.map(|yields| step_s * slip_radps / (yields * along_rad));
+        let gone = flow.map(|flow| -(-flow).exp_m1());
+        Self { slip_radps, gone, mean: std::array::from_fn(|place| gone[place] / flow[place]) }
+    }
+}
+
 /// The chain over one step in which the rate runs along a line, exactly: its forces where the rate ends at zero, and
 /// what each rad/s adds.
 pub(super) struct Chain {
@@ -37,16 +53,11 @@ pub(super) struct Chain {
 
 impl Chain {
     /// From the forces and the rate before the step.
-    pub(super) fn new([along_rad, slip_radps]: [f64; 2], forces: Forces, before_radps: f64, step_s: f64) -> Self {
-        let mut chain = Self { at_rest: forces, by_rate: forces };
-        for (place, yields) in YIELDS.iter().enumerate() {
-            let flow = step_s * slip_radps / (yields * along_rad);
-            let gone = -(-flow).exp_m1();
-            let mean = gone / flow;
-            chain.at_rest[place] = forces[place] * (1.0 - gone) + before_radps / slip_radps * (mean + gone - 1.0);
-            chain.by_rate[place] = (1.0 - mean) / slip_radps;
-        }
-        chain
+    pub(super) fn new(flow: &Flow, forces: Forces, before_radps: f64) -> Self {
+        let Flow { slip_radps, gone, mean } = flow;
+        let before = before_radps / slip_radps;
+        let at_rest = |own: usize| forces[own] * (1.0 - gone[own]) + before * (mean[own] + gone[own] - 1.0);
+        Self { at_rest: std::array::from_fn(at_rest), by_rate: mean.map(|mean| (1.0 - mean) / slip_radps) }
     }
 
     /// `w + pull share(w) = rate`: w, the share of the friction that is built up, the forces. Newton's steps between
@@ -78,7 +89,7 @@ fn share(forces: &Forces) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::Chain;
+    use super::{Chain, Flow};
 
     const ALONG_RAD: f64 = 1e-5;
     const SLIP_RADPS: f64 = 2e-3;
@@ -88,7 +99,7 @@ mod tests {
         let mut forces = [0.0; 3];
         let mut share = 0.0;
         for _ in 0..steps {
-            let chain = Chain::new([ALONG_RAD, SLIP_RADPS], forces, rate, step_s);
+            let chain = Chain::new(&Flow::new([ALONG_RAD, SLIP_RADPS], step_s), forces, rate);
             (_, share, forces) = chain.solve(rate, 0.0);
         }
         share
@@ -108,7 +119,7 @@ mod tests {
 
     #[test]
     fn closed_form_what_is_left_of_the_rate_balances_friction() {
-        let chain = Chain::new([ALONG_RAD, SLIP_RADPS], [0.9, -0.2, -0.4], 4e-3, 5e-4);
+        let chain = Chain::new(&Flow::new([ALONG_RAD, SLIP_RADPS], 5e-4), [0.9, -0.2, -0.4], 4e-3);
         for rate in [-1.0, -0.02, -1e-4, 0.0, 3e-3, 0.05] {
             for pull in [0.0, 1e-4, 1e-2, 0.3] {
                 let (w, share, _) = chain.solve(rate, pull);

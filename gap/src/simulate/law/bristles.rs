@@ -13,10 +13,21 @@ struct Bends<const L: usize> {
     onward: [Lanes<L>; 3],
 }
 
+/// A clamp that has followed the rate over a step.
+pub(in crate::simulate) struct Followed<const L: usize> {
+    /// w, and z, what is built up.
+    pub(in crate::simulate) w: Lanes<L>,
+    pub(in crate::simulate) zeta: Lanes<L>,
+    /// Share of the friction, and how much of the clamp's is in that.
+    pub(in crate::simulate) share: Lanes<L>,
+    pub(in crate::simulate) own: Lanes<L>,
+    /// The clamp's share before the step and after it.
+    pub(in crate::simulate) clamped: [Lanes<L>; 2],
+}
+
 impl<const L: usize> Law<'_, L> {
     /// The clamp with a share z that follows the clamp's over a displacement d, as bristles do whose damping has a time
-    /// constant, implicit, from that at the step's begin and the rate there: w, z, share of the friction, and how much of the
-    /// clamp's is in that.
+    /// constant, implicit, from that at the step's begin and the rate there.
     ///
     /// ```text
     /// share = z + tau z'      z' = max(|w|, w_s) / d ((1 - e) (c - z) + e sgn(c - z))      c = share(w)
@@ -30,12 +41,12 @@ impl<const L: usize> Law<'_, L> {
         [from, before]: [Lanes<L>; 2],
         [rate, brake, level]: [Lanes<L>; 3],
         step_s: f64,
-    ) -> [Lanes<L>; 4] {
+    ) -> Followed<L> {
         let late = self.follows_rad.signum();
         let damping_s = late.above(Lanes::all(0.0), self.damped_s, Lanes::all(0.0));
         let pull = brake * self.built_up(level, before);
         let [clamped_before, mut w] = [self.share(before), before];
-        let mut all = [w; 4];
+        let mut all = Followed { w, zeta: from, share: from, own: w, clamped: [clamped_before; 2] };
         for _ in 0..PASSES {
             let Bends { of, onward } = self.bends(from, [before, w], step_s);
             let kept = of[0] * from + of[1] * clamped_before;
@@ -44,7 +55,8 @@ impl<const L: usize> Law<'_, L> {
             let before_own = late * kept + damped;
             let clamped;
             (w, clamped) = self.clamp(rate - pull * before_own, brake, level * own);
-            all = [w, kept + of[2] * clamped, before_own + own * clamped, own];
+            let (zeta, share) = (kept + of[2] * clamped, before_own + own * clamped);
+            all = Followed { w, zeta, share, own, clamped: [clamped_before, clamped] };
         }
         all
     }

@@ -6,7 +6,7 @@ use crate::simulate::corner::NO_CORNER;
 use crate::simulate::lanes::{Lanes, side, within};
 use crate::simulate::now::Now;
 use crate::simulate::physics::BuildUp;
-use crate::simulate::sprung::{Chain, Forces};
+use crate::simulate::sprung::Flow;
 
 impl<const L: usize> Law<'_, L> {
     /// `T_load + T_visc` and what effects make of it.
@@ -172,23 +172,11 @@ impl<const L: usize> Law<'_, L> {
         [w, zeta, (1.0 - clamped) * zeta + clamped * within(w / slip, 1.0)]
     }
 
-    /// Whether friction is behind springs.
-    pub(in crate::simulate) fn is_sprung(&self, lane: usize) -> bool {
-        self.physics[lane].friction.builds_up == BuildUp::Sprung
-    }
-
-    /// The springs' build-up of one lane over a step: as for the others, and the springs' forces.
-    pub(in crate::simulate) fn sprung(
-        &self,
-        lane: usize,
-        before: f64,
-        forces: Forces,
-        [rate, brake, level, step_s]: [f64; 4],
-    ) -> ([f64; 3], Forces) {
-        let along = self.physics[lane].friction.presliding_rad;
-        let chain = Chain::new([along, self.slip_radps[lane]], forces, before, step_s);
-        let (w, share, forces) = chain.solve(rate, brake * level);
-        ([w, share, share], forces)
+    /// What steps of so many lengths do to the springs before the friction, where it is behind some.
+    pub(in crate::simulate) fn flows<const S: usize>(&self, lane: usize, steps_s: [f64; S]) -> Option<[Flow; S]> {
+        let friction = &self.physics[lane].friction;
+        let along = [friction.presliding_rad, self.slip_radps[lane]];
+        (friction.builds_up == BuildUp::Sprung).then(|| steps_s.map(|step_s| Flow::new(along, step_s)))
     }
 
     /// Friction that the load's bulge above the line adds.

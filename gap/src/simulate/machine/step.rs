@@ -6,6 +6,7 @@ use crate::simulate::discrete::{DIVISIONS, add};
 use crate::simulate::lanes::Lanes;
 use crate::simulate::now::Now;
 use crate::simulate::running::Running;
+use crate::simulate::sprung::Chain;
 
 #[allow(clippy::needless_range_loop, reason = "row by row, lane by lane")]
 impl<const N: usize, const L: usize> Machine<'_, N, L> {
@@ -57,26 +58,30 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
         let level = law.level(to, ahead);
         let mut of_clamp = Lanes::all(1.0);
         let mut behind = Lanes::all(0.0);
+        // in a full step there is nothing left to follow
+        let mut clamped = [state.zeta; 2];
         let [w, zeta, share] = if law.presliding {
-            self.build_up(state, [rate, brake, level], self.step_s(division))
+            self.build_up(state, [rate, brake, level], division)
         } else if law.follows && division != FULL_STEP {
-            let [w, zeta, share, own] =
-                law.following([state.zeta, state.w], [rate, brake, level], self.step_s(division));
-            of_clamp = own;
-            behind = law.share(w) - zeta;
-            [w, zeta, share]
+            let own = law.following([state.zeta, state.w], [rate, brake, level], self.step_s(division));
+            of_clamp = own.own;
+            clamped = own.clamped;
+            behind = own.clamped[1] - own.zeta;
+            [own.w, own.zeta, own.share]
         } else {
             let (w, share) = law.clamp(rate, brake, level);
+            clamped[1] = share;
             [w, share, share]
         };
         let friction = law.built_up(level, w) * share;
         add(&mut x, &step.end[0], friction);
         if !law.presliding && law.crosses(state.w, w) {
             // what a corner's mean is the mean of: the clamp by itself
-            let clamped = |own: Lanes<L>, w: Lanes<L>, share: Lanes<L>| {
-                if law.follows { own + law.built_up(level, w) * (law.share(w) - share) } else { own }
+            let by_itself = |own: Lanes<L>, w: Lanes<L>, more: Lanes<L>| {
+                if law.follows { own + law.built_up(level, w) * more } else { own }
             };
-            let (from, to) = (clamped(state.friction, state.w, state.zeta), clamped(friction, w, share));
+            let from = by_itself(state.friction, state.w, clamped[0] - state.zeta);
+            let to = by_itself(friction, w, clamped[1] - share);
             let mut off = [Lanes::all(0.0); 2];
             for lane in 0..L {
                 let (before, after) = ([state.w[lane], from[lane]], [w[lane], to[lane]]);
@@ -101,13 +106,20 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
     }
 
     /// Friction that builds up: w that it leaves, share built up, share of all friction.
-    fn build_up(&self, state: &mut Running<N, L>, [rate, brake, level]: [Lanes<L>; 3], step_s: f64) -> [Lanes<L>; 3] {
+    fn build_up(
+        &self,
+        state: &mut Running<N, L>,
+        [rate, brake, level]: [Lanes<L>; 3],
+        division: usize,
+    ) -> [Lanes<L>; 3] {
+        let step_s = self.step_s(division);
         let mut built = [Lanes::all(0.0); 3];
         for lane in 0..L {
             let onto = [rate[lane], brake[lane], level[lane], step_s];
-            let of_lane = if self.law.is_sprung(lane) {
-                let from = state.sprung.map(|force| force[lane]);
-                let (of_lane, forces) = self.law.sprung(lane, state.w[lane], from, onto);
+            let of_lane = if let Some(flows) = &self.flows[lane] {
+                let chain = Chain::new(&flows[division], state.sprung.map(|force| force[lane]), state.w[lane]);
+                let (w, share, forces) = chain.solve(onto[0], onto[1] * onto[2]);
+                let of_lane = [w, share, share];
                 state.sprung.iter_mut().zip(forces).for_each(|(sprung, force)| sprung[lane] = force);
                 of_lane
             } else {
