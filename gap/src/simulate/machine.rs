@@ -36,6 +36,8 @@ pub(super) struct Machine<'a, const N: usize, const L: usize> {
     free: [Box<Step<N, L>>; 3],
     held: OnceCell<[Box<Step<N, L>>; 3]>,
     full_steps: u32,
+    /// Length of a step of each division [s].
+    steps_s: [f64; 3],
     /// What a step of each division does to springs before the friction, where there are some.
     flows: [Option<[Flow; 3]>; L],
     command: [Lanes<L>; N],
@@ -58,6 +60,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             free: [0, 1, 2].map(|division| Box::new(Step::beside(steps.map(|own| &own.free[division])))),
             held: OnceCell::new(),
             full_steps,
+            steps_s,
             command: std::array::from_fn(|state| Lanes::each(|lane| steps[lane].command[state])),
             alone: if L > 1 { (0..L).map(alone).collect() } else { Vec::new() },
             steps,

@@ -2,7 +2,7 @@
 
 use super::{FULL_STEP, Machine};
 use crate::simulate::chain::{PHI_RATE, PLAIN, THETA, THETA_RATE, TORQUE};
-use crate::simulate::discrete::{DIVISIONS, add};
+use crate::simulate::discrete::add;
 use crate::simulate::lanes::Lanes;
 use crate::simulate::now::Now;
 use crate::simulate::running::Running;
@@ -39,7 +39,7 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
         let ahead = to.rate - guess[PHI_RATE];
         let mut hysteresis = state.hysteresis;
         if law.has_hysteresis {
-            let turned_rad = 0.5 * self.step_s(division) * (state.w + ahead);
+            let turned_rad = 0.5 * self.steps_s[division] * (state.w + ahead);
             hysteresis = law.hysteresis_after(hysteresis, turned_rad, &mut state.stops);
         }
         let others = law.others(to, &guess, hysteresis, |x| self.command_nm(x));
@@ -63,7 +63,7 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
         let [w, zeta, share] = if law.presliding {
             self.build_up(state, [rate, brake, level], division)
         } else if law.follows && division != FULL_STEP {
-            let own = law.following([state.zeta, state.w], [rate, brake, level], self.step_s(division));
+            let own = law.following([state.zeta, state.w], [rate, brake, level], self.steps_s[division]);
             of_clamp = own.own;
             clamped = own.clamped;
             behind = own.clamped[1] - own.zeta;
@@ -112,10 +112,9 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
         [rate, brake, level]: [Lanes<L>; 3],
         division: usize,
     ) -> [Lanes<L>; 3] {
-        let step_s = self.step_s(division);
         let mut built = [Lanes::all(0.0); 3];
         for lane in 0..L {
-            let onto = [rate[lane], brake[lane], level[lane], step_s];
+            let onto = [rate[lane], brake[lane], level[lane], self.steps_s[division]];
             let of_lane = if let Some(flows) = &self.flows[lane] {
                 let chain = Chain::new(&flows[division], state.sprung.map(|force| force[lane]), state.w[lane]);
                 let (w, share, forces) = chain.solve(onto[0], onto[1] * onto[2]);
@@ -128,11 +127,6 @@ impl<const N: usize, const L: usize> Machine<'_, N, L> {
             built.iter_mut().zip(of_lane).for_each(|(built, value)| built[lane] = value);
         }
         built
-    }
-
-    #[inline(always)]
-    fn step_s(&self, division: usize) -> f64 {
-        self.inputs.period_s / f64::from(self.full_steps * DIVISIONS[division])
     }
 
     #[inline(always)]
