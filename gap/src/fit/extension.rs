@@ -21,7 +21,7 @@ pub(super) struct Extension {
     /// The candidate.
     pub(super) index: usize,
     /// Linear evidence over the fit that it extends [nats].
-    gain: f64,
+    pub(super) gain: f64,
     /// What the linear fit makes of its columns.
     pub(super) amplitudes: Vec<f64>,
 }

@@ -1,10 +1,13 @@
 //! An effect more in a fit, in the formulation of it that leaves least.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use super::extension::{Extension, first_of_each};
 use super::hypothesis::{Point, left};
 use super::refine::Effort;
+use super::search::is_all;
 use super::{Fit, Problem, Set, refine};
 use crate::library::NAMED;
 
@@ -17,8 +20,15 @@ const FINER: [f64; 5] = [0.6, 0.77, 1.0, 1.3, 1.7];
 const OTHERS: [(&str, &[(f64, f64)]); 2] =
     [("cable_hysteresis", &[(1.0, 0.8), (2.0, 0.9), (3.0, 1.15)]), ("stribeck", &[(1.0, 1.2), (2.0, 0.83)])];
 
-/// A fit with one candidate more.
+/// A fit with one candidate more, in the formulation that leaves least where the first one leaves anything.
 pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {
+    let first = first(problem, from, extension)?;
+    let is_told = others(problem, extension).is_empty() || is_all(problem, &first);
+    Some(if is_told { first } else { otherwise(problem, from, extension, first) })
+}
+
+/// A fit with one candidate more in its first formulation.
+pub(super) fn first(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {
     let candidate = &problem.candidates[extension.index];
     // a chord of pre-sliding misleads: its settings are tried as they are, and before a fit its formulations are hardly
     // told apart
@@ -27,31 +37,49 @@ pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Op
     } else {
         vec![(extension.index, candidate.values(&extension.amplitudes))]
     };
-    let closer = |a: &Fit, b: &Fit| a.cost().total_cmp(&b.cost());
-    let fitted = |(index, own): (usize, Vec<f64>)| {
-        let (set, values) = extended(from, index, own);
-        let fit = refine(problem, &set, &values, Some(from), Effort::Quick);
-        if from.set.0.is_empty() && fit.is_held(problem) {
-            // it began where nominal parameters went that far for want of the effect, and the walls that hold them let it go
-            // back by small steps alone
-            let anew = refine(problem, &set, &fit.values, None, Effort::Quick);
-            return std::cmp::min_by(fit, anew, closer);
-        }
-        fit
-    };
-    let closest = starts.into_par_iter().map(fitted).min_by(closer)?;
-    // other formulations are tried where the first could be named, from the same place: a prior is about where a fit begins
-    let others = OTHERS.iter().find(|(effect, _)| *effect == candidate.effect).map_or(&[][..], |(_, others)| others);
-    if others.is_empty() || from.cost() - closest.cost() < 2.0 * NAMED {
-        return Some(closest);
+    starts.into_par_iter().map(|(index, own)| with(problem, from, index, own)).min_by(closer)
+}
+
+/// The same in another formulation where that leaves less. They are tried where the first could be named, from the same place: a
+/// prior is about where a fit begins.
+pub(super) fn otherwise(problem: &Problem, from: &Fit, extension: &Extension, first: Fit) -> Fit {
+    if from.cost() - first.cost() < 2.0 * NAMED {
+        return first;
     }
     let other = |(way, ratio): &(f64, f64)| {
-        let mut own = candidate.values(&extension.amplitudes);
+        let mut own = problem.candidates[extension.index].values(&extension.amplitudes);
         own[1] *= ratio;
         own.push(*way);
-        fitted((extension.index, own))
+        with(problem, from, extension.index, own)
     };
-    others.par_iter().map(other).chain([closest]).min_by(closer)
+    let other = others(problem, extension).par_iter().map(other).min_by(closer);
+    match other {
+        Some(other) if other.cost() < first.cost() => other,
+        _ => first,
+    }
+}
+
+/// The other formulations of an effect.
+fn others(problem: &Problem, extension: &Extension) -> &'static [(f64, f64)] {
+    let effect = problem.candidates[extension.index].effect;
+    OTHERS.iter().find(|(own, _)| *own == effect).map_or(&[], |(_, others)| others)
+}
+
+fn closer(a: &Fit, b: &Fit) -> Ordering {
+    a.cost().total_cmp(&b.cost())
+}
+
+/// A fit with one candidate more, from values of it.
+fn with(problem: &Problem, from: &Fit, index: usize, own: Vec<f64>) -> Fit {
+    let (set, values) = extended(from, index, own);
+    let fit = refine(problem, &set, &values, Some(from), Effort::Quick);
+    if from.set.0.is_empty() && fit.is_held(problem) {
+        // it began where nominal parameters went that far for want of the effect, and the walls that hold them let it go
+        // back by small steps alone
+        let anew = refine(problem, &set, &fit.values, None, Effort::Quick);
+        return std::cmp::min_by(fit, anew, closer);
+    }
+    fit
 }
 
 /// Of the formulations of an effect the ones that leave least beside a fit, each with the setting that does, looked for

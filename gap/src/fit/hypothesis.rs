@@ -148,12 +148,14 @@ impl<'a> Hypothesis<'a> {
         Outcome::of(self.problem, self.predict(point))
     }
 
-    /// What the prediction changes by from a point to moved ones, whitened, over the steps.
+    /// What the prediction changes by from a point to moved ones, whitened, over the steps; nothing where one of them comes to no
+    /// end, as one column of no numbers would leave none of the others a fit.
     pub(crate) fn slopes(&self, moved: Vec<(Variant, f64)>, now: &Prediction) -> Vec<Vec<f32>> {
         let (variants, steps): (Vec<Variant>, Vec<f64>) = moved.into_iter().unzip();
         let record = self.problem.record;
         predict_each(&variants, &record.inputs, |index, moved| {
-            narrow(&self.problem.whiten(difference(record, &moved, now, steps[index])))
+            let column = narrow(&self.problem.whiten(difference(record, &moved, now, steps[index])));
+            if column.iter().all(|value| value.is_finite()) { column } else { vec![0.0; column.len()] }
         })
     }
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::ceiling::saturated;
 use super::extension::{Extension, Glimpse, best_by_effect, extensions, glimpses_beside, promising, seen};
-use super::formulations::extend;
+use super::formulations::{self, extend, otherwise};
 use super::gross::gross;
 use super::heavy::heavy;
 use super::less::with_less;
@@ -52,6 +52,8 @@ const FAR: f64 = 2e3;
 /// How often it is taken further at most, and what of its square it leaves as long as it gets there.
 const MOST_TURNS: usize = 5;
 const GOES_ON: f64 = 0.95;
+/// Share of what a set is behind the best one that an effect more must promise, by the equations linearised.
+const AS_MUCH: f64 = 0.5;
 /// What the shifts of nominal parameters cost that are none any more: what stands for effects so large is no null.
 const NOT_NOMINAL: f64 = 1e3;
 /// How often sets that are less than the best are tried, while that changes.
@@ -167,6 +169,11 @@ pub(super) fn is_closed(problem: &Problem, fit: &Fit) -> bool {
     fit.square <= closed_at(problem)
 }
 
+/// Whether a fit closes the gap and nothing in the library promises more.
+pub(super) fn is_all(problem: &Problem, fit: &Fit) -> bool {
+    is_closed(problem, fit) && !extensions(problem, fit).iter().any(|extension| promising(problem, extension))
+}
+
 fn closest<'a>(null: &'a Fit, fits: &'a [Fit]) -> &'a Fit {
     fits.iter().fold(null, |best, fit| if fit.square < best.square { fit } else { best })
 }
@@ -200,13 +207,16 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
     let alone = fits.first().filter(|fit| fit.set.0.len() == 1 && !near_a_stop).map(|fit| fit.effects[0]);
     let is_known = |extension: &Extension| alone == Some(problem.candidates[extension.index].effect);
     fits.extend(saturated(problem, null));
-    fits.par_extend(
-        first
-            .par_iter()
-            .take(SINGLES)
-            .filter(|extension| promising(problem, extension) && !is_known(extension))
-            .filter_map(|extension| extend(problem, null, extension)),
-    );
+    let extended: Vec<(&Extension, Fit)> = first
+        .par_iter()
+        .take(SINGLES)
+        .filter(|extension| promising(problem, extension) && !is_known(extension))
+        .filter_map(|extension| Some((extension, formulations::first(problem, null, extension)?)))
+        .collect();
+    let best = extended.iter().map(|(_, fit)| fit).chain(&fits).min_by(|a, b| a.square.total_cmp(&b.square));
+    let all_told = best.is_some_and(|best| is_all(problem, best));
+    let otherwise = |(extension, fit)| if all_told { fit } else { otherwise(problem, null, extension, fit) };
+    fits.par_extend(extended.into_par_iter().map(otherwise));
     if !fits.iter().any(|fit| fit.effects == ["presliding"]) {
         fits.extend(built_up(problem, null));
     }
@@ -225,16 +235,25 @@ fn widen(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>, size: usize) {
         fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
     // beside one that closes the gap, others that are far from it lead to what it leads to
     let best = closest(null, fits);
+    let is_told = is_all(problem, best);
     if is_closed(problem, best) {
+        let least = if is_told { 1.0 } else { CLOSE };
         let gain = |fit: &Fit| null.square - fit.square;
-        seeds.retain(|seed| gain(seed) >= CLOSE * gain(best) || seed.square - best.square < FAR);
+        seeds.retain(|seed| gain(seed) >= least * gain(best) || seed.square - best.square < FAR);
     }
+    // where it tells all, others are for what may come to as much without it
+    let temper = problem.formulation(best, null);
+    let leads = |seed: &Fit, extension: &Extension| {
+        let has = |index: &usize| extension.index == *index || seed.set.0.contains(index);
+        let behind = best.evidence(temper) - seed.evidence(temper);
+        !is_told || !best.set.0.iter().all(has) && extension.gain > AS_MUCH * behind
+    };
     let wider: Vec<Fit> = seeds
         .par_iter()
         .flat_map(|seed| {
             let next = best_by_effect(problem, extensions(problem, seed), EXTENSIONS);
             next.into_par_iter()
-                .filter(|extension| promising(problem, extension))
+                .filter(|extension| promising(problem, extension) && leads(seed, extension))
                 .filter_map(|extension| extend(problem, seed, &extension))
         })
         .chain(seeds.par_iter().filter_map(|seed| saturated(problem, seed)))

@@ -7,7 +7,7 @@ use super::Physics;
 use super::bearing::Viscous;
 use super::cable::Stops;
 use super::chain::{PHI, PHI_RATE};
-use super::corner::Corner;
+use super::corner::{Corner, Corners};
 use super::inputs::{Curve, turned};
 use super::lanes::{Lanes, within};
 use super::now::Now;
@@ -24,9 +24,10 @@ pub(super) struct Law<'a, const L: usize> {
     load_factor: Lanes<L>,
     asymmetry: Lanes<L>,
     pub(super) slip_radps: Lanes<L>,
+    /// One over that.
+    over_slip_s: Lanes<L>,
     corner: [Corner; L],
-    is_round: bool,
-    has_tails: bool,
+    corners: Corners<L>,
     follows_rad: Lanes<L>,
     damped_s: Lanes<L>,
     straight: Lanes<L>,
@@ -69,9 +70,9 @@ impl<'a, const L: usize> Law<'a, L> {
             load_factor: of(&|own| own.friction.load_factor),
             asymmetry: of(&|own| own.friction.asymmetry),
             slip_radps: of(&Physics::slip_rate_radps),
+            over_slip_s: of(&|own| 1.0 / own.slip_rate_radps()),
             corner: physics.map(|own| own.friction.corner),
-            is_round: any(&|own| own.friction.corner.is_round()),
-            has_tails: any(&|own| own.friction.corner.has_tails()),
+            corners: Corners::new(physics.map(|own| own.friction.corner)),
             follows_rad: of(&|own| own.friction.follows_rad),
             straight: of(&|own| own.friction.straight),
             damped_s: of(&|own| own.friction.damped_s),

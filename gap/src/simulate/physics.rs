@@ -4,6 +4,9 @@ use gimbal_servo::Config;
 
 use super::corner::Corner;
 
+/// Narrowest clamp of the friction, over the nominal one: a fit may ask for one that is none.
+const SHARPEST: f64 = 1e-3;
+
 /// Everything that a prediction depends on beside the inputs and the beginning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Physics {
@@ -235,7 +238,7 @@ impl Physics {
 
     /// Rate up to which the friction of the bearings follows the rate [rad/s].
     pub(crate) fn slip_rate_radps(&self) -> f64 {
-        self.config.bearing.slip_rate_radps * (1.0 - self.friction.sharper)
+        self.config.bearing.slip_rate_radps * (1.0 - self.friction.sharper).max(SHARPEST)
     }
 
     /// The nominal platform.
@@ -278,7 +281,17 @@ impl Physics {
 
 #[cfg(test)]
 mod tests {
-    use super::{Fall, Stribeck};
+    use super::{Fall, Physics, Stribeck};
+
+    #[test]
+    fn contract_a_clamp_that_is_as_sharp_as_can_be_is_one() {
+        let mut physics = Physics::nominal(&gimbal_model_file::ModelFile::default().config);
+        let nominal_radps = physics.slip_rate_radps();
+        for (sharper, share) in [(0.5, 0.5), (0.999_5, 1e-3), (1.0, 1e-3), (1.5, 1e-3)] {
+            physics.friction.sharper = sharper;
+            assert!((physics.slip_rate_radps() / nominal_radps - share).abs() < 1e-12, "{sharper}");
+        }
+    }
 
     #[test]
     fn closed_form_the_excess_falls_with_the_rate_in_either_direction() {

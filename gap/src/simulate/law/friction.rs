@@ -2,7 +2,6 @@
 
 use super::Law;
 use crate::simulate::GRAVITY_MPS2;
-use crate::simulate::corner::NO_CORNER;
 use crate::simulate::lanes::{Lanes, side, within};
 use crate::simulate::now::Now;
 use crate::simulate::physics::BuildUp;
@@ -51,9 +50,9 @@ impl<const L: usize> Law<'_, L> {
     /// Share of the friction that is there at a rate: `clamp(x)` and what its corners have more, `x = w / w_s`.
     #[inline(always)]
     pub(in crate::simulate) fn share(&self, w: Lanes<L>) -> Lanes<L> {
-        let x = w / self.slip_radps;
+        let x = w * self.over_slip_s;
         let clamp = x.within(1.0);
-        if self.is_round_at(w) { clamp + self.rounding(x) } else { clamp }
+        if self.corners.are_round_at(x) { clamp + self.corners.rounding(x) } else { clamp }
     }
 
     /// The clamp, implicit: `w + brake level share(w) = rate`: w, share of the friction. What is round of it is a small part,
@@ -61,30 +60,25 @@ impl<const L: usize> Law<'_, L> {
     #[inline(always)]
     pub(in crate::simulate) fn clamp(&self, rate: Lanes<L>, brake: Lanes<L>, level: Lanes<L>) -> (Lanes<L>, Lanes<L>) {
         let mut w = self.hard(rate, brake, level);
-        if self.is_round_at(w) {
-            let round = self.rounding(w / self.slip_radps);
+        let x = w * self.over_slip_s;
+        if self.corners.are_round_at(x) {
+            let round = self.corners.rounding(x);
             w = self.hard(rate - brake * self.built_up(level, w) * round, brake, level);
         }
         (w, self.share(w))
     }
 
-    /// What the corners have more than a clamp, at a rate over the slip rate.
-    #[inline(always)]
-    fn rounding(&self, x: Lanes<L>) -> Lanes<L> {
-        Lanes::each(|lane| self.corner[lane].rounding(x[lane]))
-    }
-
-    /// Whether any of the rates is near a round corner.
-    #[inline(always)]
-    fn is_round_at(&self, w: Lanes<L>) -> bool {
-        self.is_round && (self.has_tails || w.any(self.slip_radps, |w, slip| w.abs() < NO_CORNER * slip))
-    }
-
     #[inline(always)]
     fn hard(&self, rate: Lanes<L>, brake: Lanes<L>, level: Lanes<L>) -> Lanes<L> {
-        let slip = self.slip_radps;
         let pull = brake * self.built_up(level, rate);
-        rate.abs().above(slip + pull, rate - pull * rate.signum(), rate / (1.0 + pull / slip))
+        let least = self.slip_radps + pull;
+        let slips = rate - pull * rate.signum();
+        // a quotient that nothing waits for where all slip
+        if rate.any(least, |rate, least| rate.abs() <= least) {
+            rate.abs().above(least, slips, rate / (1.0 + pull * self.over_slip_s))
+        } else {
+            slips
+        }
     }
 
     /// Whether a step crosses a corner of the clamp, or goes from one viscous law to the other.
