@@ -6,7 +6,7 @@ use gimbal_model_file::ModelFile;
 use crate::fit::{Fit, Known, Tried, without};
 use crate::judge::{
     Correlation, CurvePoint, Decision, Detectable, Portrait, Shrink, Spread, Verdict, Yardstick, bounds_hit,
-    contradicted, correlations, curve, decide, detectable, free_running, one_step, portrait, shrink,
+    contradicted, correlations, curve, decide, detectable, free_running, one_step, portrait, shrink, slow_noise,
 };
 use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
@@ -157,6 +157,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     let asked = Asked { known, temper: search.temper(&problem), tried };
     let mut decision = decide(&problem, &search, &model.tolerance);
     decision.notes.extend(imitated);
+    decision.notes.extend(slow_noise(&problem));
     let channels = record.channels.len();
     let mut fit = match decision.chosen {
         Some(index) => search.fits.swap_remove(index),

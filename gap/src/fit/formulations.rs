@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use super::extension::{Extension, first_of_each};
 use super::hypothesis::{Point, left};
 use super::refine::Effort;
-use super::search::is_all;
 use super::{Fit, Problem, Set, refine};
 use crate::library::NAMED;
 
@@ -20,11 +19,9 @@ const FINER: [f64; 5] = [0.6, 0.77, 1.0, 1.3, 1.7];
 const OTHERS: [(&str, &[(f64, f64)]); 2] =
     [("cable_hysteresis", &[(1.0, 0.8), (2.0, 0.9), (3.0, 1.15)]), ("stribeck", &[(1.0, 1.2), (2.0, 0.83)])];
 
-/// A fit with one candidate more, in the formulation that leaves least where the first one leaves anything.
+/// A fit with one candidate more, in the formulation that leaves least.
 pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {
-    let first = first(problem, from, extension)?;
-    let is_told = others(problem, extension).is_empty() || is_all(problem, &first);
-    Some(if is_told { first } else { otherwise(problem, from, extension, first) })
+    Some(otherwise(problem, from, extension, first(problem, from, extension)?))
 }
 
 /// A fit with one candidate more in its first formulation.

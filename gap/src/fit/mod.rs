@@ -41,6 +41,7 @@ pub(crate) use linear::Linear;
 pub use normal::Solution;
 pub(crate) use normal::{drive, gram, narrow, of_any_scale, slices, solve};
 pub(crate) use plans::Plans;
+pub use power::Noise;
 pub use problem::{BLOCKS, Columns, Problem};
 pub use refine::{Effort, Fit, refine};
 pub(crate) use refine::{is_idle, linearised, stand, standard_errors};

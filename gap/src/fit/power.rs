@@ -39,6 +39,10 @@ const FLICKER_NATS: f64 = 3.5;
 /// Corners of filters against aliasing, of second and of fourth order [Hz].
 const FILTERS_HZ: [f64; 13] = [80.0, 90.0, 100.0, 112.0, 125.0, 140.0, 160.0, 180.0, 200.0, 225.0, 250.0, 280.0, 320.0];
 const FILTER_ORDERS: [i32; 2] = [2, 4];
+/// Least white noise that slow noise is compared with, and steps of frequency in which its end is looked for.
+const LEAST_WHITE: f64 = 1e-3;
+const FINER: f64 = 1.1;
+const MOST_STEPS: usize = 120;
 /// Below this frequency the noise of the logged inputs may be flicker: accelerometers of which a bias wanders [Hz].
 pub(super) const INPUTS_CORNER_HZ: f64 = 5.0;
 
@@ -97,6 +101,19 @@ impl Slow {
 impl Noise {
     pub(super) fn power(&self, hz: f64, shapes: [f64; 4]) -> f64 {
         self.white + self.inputs * shapes[0] + self.of_loop(shapes) + self.low * self.slow.at(hz)
+    }
+
+    /// How far slow noise is above the white one where the log shows least of it, in amplitude, and from which frequency on it is
+    /// below that [Hz]; none where there is none.
+    pub(crate) fn slow_over_white(&self) -> Option<[f64; 2]> {
+        // of higher order it is white noise behind a filter
+        if matches!(self.slow, Slow::None | Slow::Steep(_, 2..)) {
+            return None;
+        }
+        let over = |hz: f64| (self.low * self.slow.at(hz) / self.white.max(LEAST_WHITE)).sqrt();
+        let higher = std::iter::successors(Some(self.from_hz), |hz| Some(FINER * hz)).take(MOST_STEPS);
+        let end_hz = higher.take_while(|hz| over(*hz) > 1.0).last()?;
+        Some([over(self.from_hz), end_hz])
     }
 
     /// Of the pick-off in the loop.

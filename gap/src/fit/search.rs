@@ -214,8 +214,10 @@ fn singles(problem: &Problem, null: &Fit, known: Option<Fit>) -> (Vec<Fit>, Vec<
         .filter_map(|extension| Some((extension, formulations::first(problem, null, extension)?)))
         .collect();
     let best = extended.iter().map(|(_, fit)| fit).chain(&fits).min_by(|a, b| a.square.total_cmp(&b.square));
-    let all_told = best.is_some_and(|best| is_all(problem, best));
-    let otherwise = |(extension, fit)| if all_told { fit } else { otherwise(problem, null, extension, fit) };
+    let all_told = best.filter(|best| is_all(problem, best)).map_or(f64::INFINITY, |best| best.square);
+    let otherwise = |(extension, fit): (&Extension, Fit)| {
+        if fit.square > all_told { fit } else { otherwise(problem, null, extension, fit) }
+    };
     fits.par_extend(extended.into_par_iter().map(otherwise));
     if !fits.iter().any(|fit| fit.effects == ["presliding"]) {
         fits.extend(built_up(problem, null));

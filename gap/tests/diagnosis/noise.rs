@@ -66,6 +66,25 @@ fn noise_of_a_sensor_behind_a_filter_is_noise() {
     assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:#}", report(&diagnosis)["notes"]);
 }
 
+/// What drifts of a sensor hides an effect that nobody knows, and the report says how much it does.
+#[test]
+fn much_slow_noise_of_a_sensor_is_told() {
+    let notes = |drift_rad: f64| {
+        let mut log = log_with(Excitation::Flight, &[]);
+        let mut rng = corpus::rng(29, 7);
+        let mut drifted_rad = 0.0;
+        let drifts = |angle_rad: &f64| {
+            drifted_rad += drift_rad * rng.sample::<f64, _>(StandardNormal) - 2e-3 * drifted_rad;
+            angle_rad + drifted_rad
+        };
+        let theta_rad = log.column(Column::GyroAngle).expect("the pick-off").iter().map(drifts).collect();
+        log.set(Column::GyroAngle, theta_rad);
+        report(&diagnose(&log, &ModelFile::default()))["notes"].to_string()
+    };
+    let told = "gyro_angle_rad: below ";
+    assert!(notes(4e-7).contains(told) && !notes(0.0).contains(told), "{} and {}", notes(4e-7), notes(0.0));
+}
+
 /// A pick-off that steps does so in the loop, and the motor answers.
 #[test]
 fn steps_of_a_converter_behind_the_loop_are_no_quantised_pickoff() {
