@@ -11,7 +11,7 @@ use crate::judge::{
 use crate::mistake::mistaken;
 use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
 use crate::record::{BEGINNING_S, Data, Record, faults};
-use crate::settle::{Settled, settled};
+use crate::settle::{Measured, Settled, settled};
 use crate::shake::shaken;
 use crate::touch::touched;
 
@@ -103,14 +103,25 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         Data::Doubtful(told, undone) => Some((told, undone)),
     };
     read.quieten(&crate::library::platform(model));
-    let mut whole = settled(&read, model);
+    let mut on = Measured::new(&read, model);
+    // the sooner, the less is fitted with a noise of the rate that is not all
+    let mut is_shaken = false;
+    if on.is_near()
+        && let Some(rate_radps) = shaken(&on.problem, &on.nominal)
+    {
+        drop(on);
+        read.is_shaken(rate_radps);
+        is_shaken = true;
+        on = Measured::new(&read, model);
+    }
+    let mut whole = on.settled();
     // hum that the gap hid
     if let Some(hushed) = read.hushed(&whole.search.closest().prediction) {
         drop(whole);
         read = hushed;
         whole = settled(&read, model);
     }
-    if let Some(rate_radps) = shaken(&whole) {
+    if !is_shaken && let Some(rate_radps) = shaken(&whole.problem, whole.search.closest()) {
         drop(whole);
         read.is_shaken(rate_radps);
         whole = settled(&read, model);

@@ -29,39 +29,16 @@ pub(crate) struct Settled<'a> {
 
 /// The search whose noise stands.
 pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
-    let mut on = Measured::new(Ground::new(record, model));
-    loop {
-        on.complete();
-        let mut looked = look(&on.problem, on.nominal.clone(), on.carried.take());
-        let mut beaten = on.may_be_beaten_by(looked.closest());
-        // pairs are for a noise that no single effect stays below
-        if !beaten {
-            looked = looked.widened(&mut on.problem);
-            beaten = on.may_be_beaten_by(looked.closest());
-        }
-        let best = if beaten {
-            let best = looked.closest().clone();
-            drop(looked);
-            ended(&mut on.problem, best)
-        } else {
-            let search = looked.finished(&mut on.problem);
-            if !on.may_be_beaten_by(search.closest()) {
-                return Settled { problem: on.problem, search, known: on.known };
-            }
-            let best = search.closest().clone();
-            on.nominal = search.null;
-            best
-        };
-        on = on.again_until_it_stands(best);
-    }
+    Measured::new(record, model).settled()
 }
 
 /// A problem under a noise, by the sensitivities at the fit of the nominal parameters.
-struct Measured<'a> {
+pub(crate) struct Measured<'a> {
     ground: Ground<'a>,
     known: Option<Known>,
-    problem: Problem<'a>,
-    nominal: Fit,
+    pub(crate) problem: Problem<'a>,
+    /// That fit.
+    pub(crate) nominal: Fit,
     /// What left this noise, fitted under it.
     carried: Option<Fit>,
     /// How often the noise may be taken again.
@@ -71,7 +48,9 @@ struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    fn new(ground: Ground<'a>) -> Self {
+    /// The nominal parameters, fitted under the noise that they leave.
+    pub(crate) fn new(record: &'a Record, model: &ModelFile) -> Self {
+        let ground = Ground::new(record, model);
         let mut problem = ground.problem(None);
         let mut nominal = null(&mut problem, None);
         let known = if is_near(&problem, &nominal) { ground.known_behind(&nominal) } else { None };
@@ -79,18 +58,53 @@ impl<'a> Measured<'a> {
             problem = ground.problem(known.clone());
             nominal = null(&mut problem, Some(&nominal));
         }
-        let mut on = Self { ground, known, problem, nominal, carried: None, more: AGAIN, stands_at: f64::INFINITY };
-        if !on.is_beaten_by(&on.nominal) {
-            return on;
-        }
-        // near the noise, and at the end of their tolerance, the nominal parameters stand for an effect
-        let mut best = on.nominal.clone();
-        if is_near(&on.problem, &best) && best.is_strained(&on.problem) {
+        Self { ground, known, problem, nominal, carried: None, more: AGAIN, stands_at: f64::INFINITY }
+    }
+
+    /// Whether the nominal parameters come near the noise.
+    pub(crate) fn is_near(&self) -> bool {
+        is_near(&self.problem, &self.nominal)
+    }
+
+    /// The search from here, once more under each noise that did not stand.
+    pub(crate) fn settled(self) -> Settled<'a> {
+        let mut on = if self.is_beaten_by(&self.nominal) { self.under_less() } else { self };
+        loop {
             on.complete();
-            best = look(&on.problem, best, None).widened(&mut on.problem).closest().clone();
-            best = ended(&mut on.problem, best);
+            let mut looked = look(&on.problem, on.nominal.clone(), on.carried.take());
+            let mut beaten = on.may_be_beaten_by(looked.closest());
+            // pairs are for a noise that no single effect stays below
+            if !beaten {
+                looked = looked.widened(&mut on.problem);
+                beaten = on.may_be_beaten_by(looked.closest());
+            }
+            let best = if beaten {
+                let best = looked.closest().clone();
+                drop(looked);
+                ended(&mut on.problem, best)
+            } else {
+                let search = looked.finished(&mut on.problem);
+                if !on.may_be_beaten_by(search.closest()) {
+                    return Settled { problem: on.problem, search, known: on.known };
+                }
+                let best = search.closest().clone();
+                on.nominal = search.null;
+                best
+            };
+            on = on.again_until_it_stands(best);
         }
-        on.again(&best)
+    }
+
+    /// Under the noise that the nominal parameters leave, or a first look: near the noise, and at the end of their tolerance, they
+    /// stand for an effect.
+    fn under_less(mut self) -> Self {
+        let mut best = self.nominal.clone();
+        if self.is_near() && best.is_strained(&self.problem) {
+            self.complete();
+            best = look(&self.problem, best, None).widened(&mut self.problem).closest().clone();
+            best = ended(&mut self.problem, best);
+        }
+        self.again(&best)
     }
 
     /// Ready for a look through the library.

@@ -18,9 +18,9 @@ use std::f64::consts::TAU;
 
 use gimbal_servo::servo;
 
-use crate::fit::{Plans, servo_answer};
+use crate::fit::{Fit, Plans, Problem, servo_answer};
 use crate::record::Signal;
-use crate::settle::Settled;
+use crate::simulate::Physics;
 
 /// From where on it is looked for [Hz].
 const LEAST_HZ: f64 = 30.0;
@@ -36,23 +36,22 @@ const IN_LOOP: f64 = 0.4;
 const LINES: u32 = 2048;
 
 /// Rms of the gimbal's rate that the loop's noise makes [rad/s]; none where it is no matter beside that of the logged rate.
-pub(crate) fn shaken(settled: &Settled) -> Option<f64> {
-    let record = settled.problem.record;
+pub(crate) fn shaken(problem: &Problem, fit: &Fit) -> Option<f64> {
+    let record = problem.record;
     let place = |signal| record.channels.iter().position(|channel| channel.signal == signal);
     let angle = place(Signal::GyroAngle)?;
     let rate_radps = match place(Signal::MotorTorque) {
-        Some(torque) => with_torque(settled, [angle, torque]),
-        None => by_shape(settled, angle),
+        Some(torque) => with_torque(problem, fit, [angle, torque]),
+        None => by_shape(problem, &fit.physics, angle),
     }?;
-    let slip_radps = settled.search.closest().physics.slip_rate_radps();
+    let slip_radps = fit.physics.slip_rate_radps();
     let least_radps = (NOTABLE * record.rate_noise.rms_radps).max(LEAST_OF_SLIP * slip_radps);
     (rate_radps > least_radps).then_some(rate_radps)
 }
 
 /// From what both channels have of it.
-fn with_torque(Settled { problem, search, .. }: &Settled, places: [usize; 2]) -> Option<f64> {
+fn with_torque(problem: &Problem, fit: &Fit, places: [usize; 2]) -> Option<f64> {
     let record = problem.record;
-    let fit = search.closest();
     let residuals = problem.residual(&fit.prediction);
     let both = |row: usize| places.iter().all(|&place| record.channels[place].valid[row]);
     let valid: Vec<bool> = (0..record.rows()).map(both).collect();
@@ -77,9 +76,8 @@ fn with_torque(Settled { problem, search, .. }: &Settled, places: [usize; 2]) ->
 }
 
 /// From the shape of the pick-off's noise, where most of it is what the loop makes.
-fn by_shape(Settled { problem, search, .. }: &Settled, angle: usize) -> Option<f64> {
+fn by_shape(problem: &Problem, physics: &Physics, angle: usize) -> Option<f64> {
     let period_s = problem.record.inputs.period_s;
-    let physics = &search.closest().physics;
     let (mut square, mut in_loop, mut all) = (0.0, 0.0, 0.0);
     for line in 1..LINES {
         let hz = 0.5 * f64::from(line) / (f64::from(LINES) * period_s);

@@ -62,7 +62,8 @@ fn others(problem: &Problem, extension: &Extension) -> &'static [(f64, f64)] {
     OTHERS.iter().find(|(own, _)| *own == effect).map_or(&[], |(_, others)| others)
 }
 
-fn closer(a: &Fit, b: &Fit) -> Ordering {
+/// Which of two fits leaves less, what its shifts cost counted.
+pub(super) fn closer(a: &Fit, b: &Fit) -> Ordering {
     a.cost().total_cmp(&b.cost())
 }
 

@@ -3,8 +3,10 @@
 use gimbal_plant::Effect;
 use rayon::prelude::*;
 
+use super::extension::{Extension, best_by_effect, extensions, promising};
+use super::formulations::extend;
 use super::refine::Effort;
-use super::search::{polish, same};
+use super::search::{AS_MUCH, polish, same};
 use super::{Fit, Problem, Set, refine};
 use crate::simulate::GRAVITY_MPS2;
 
@@ -12,6 +14,8 @@ use crate::simulate::GRAVITY_MPS2;
 const LOOKED_AT: usize = 3;
 /// What a set may cost over the best one to be fitted to its end.
 const NEAR: f64 = 1.02;
+/// Effects that are tried in the place of one.
+const OTHERS: usize = 2;
 
 /// Sets near the best that are less than one that was fitted start where that one ended.
 pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
@@ -37,11 +41,46 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
             fit
         })
         .collect();
-    for fit in less {
-        fits.retain(|other| !same(problem, &other.set, &fit.set) || other.cost() < fit.cost());
-        if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
-            fits.push(fit);
-        }
+    less.into_iter().for_each(|fit| take_in(problem, fits, fit));
+}
+
+/// Sets with another effect in the place of one of the best set's, where the others lead to one that may come to as much: a
+/// set grows by what is best at the time.
+pub(super) fn with_another(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>) {
+    let Some(best) = fits.first().filter(|best| best.set.0.len() > 1) else { return };
+    let temper = problem.formulation(best, null);
+    let is_less = |fit: &&Fit| {
+        fit.set.0.len() + 1 == best.set.0.len() && fit.effects.iter().all(|effect| best.effects.contains(effect))
+    };
+    let less: Vec<&Fit> = fits.iter().filter(is_less).collect();
+    let others: Vec<Fit> = less
+        .into_par_iter()
+        .flat_map(|less| {
+            let behind = best.evidence(temper) - less.evidence(temper);
+            let leads = |extension: &Extension| {
+                let effect = problem.candidates[extension.index].effect;
+                promising(problem, extension) && !best.effects.contains(&effect) && extension.gain > AS_MUCH * behind
+            };
+            let mut next = best_by_effect(problem, extensions(problem, less), usize::MAX);
+            next.retain(leads);
+            next.truncate(OTHERS);
+            next.into_par_iter().filter_map(|extension| {
+                let mut fit = extend(problem, less, &extension)?;
+                if fit.cost() < NEAR * best.cost() {
+                    polish(problem, &mut fit);
+                }
+                Some(fit)
+            })
+        })
+        .collect();
+    others.into_iter().for_each(|fit| take_in(problem, fits, fit));
+}
+
+/// With one fit more, in the place of those of the same effects that leave more.
+fn take_in(problem: &Problem, fits: &mut Vec<Fit>, fit: Fit) {
+    fits.retain(|other| !same(problem, &other.set, &fit.set) || other.cost() < fit.cost());
+    if !fits.iter().any(|other| same(problem, &other.set, &fit.set)) {
+        fits.push(fit);
     }
 }
 

@@ -11,12 +11,14 @@ use super::normal::{Solution, gram, narrow, products, slices, solve};
 use super::pull::Pull;
 use crate::simulate::Prediction;
 
+/// What the shift of a nominal parameter by itself must change so that it matters how it does [nats].
+const MOVES: f64 = 100.0;
 /// Place of the gimbal's angle at the beginning, which does not die away.
 const PHI: usize = 9;
 
 /// Sensitivities to the beginning and to the nominal parameters, and their Gram matrix.
 pub(crate) struct Linear<'a> {
-    pub(crate) columns: Cow<'a, [Vec<f32>]>,
+    columns: Vec<Cow<'a, [f32]>>,
     gram: DMatrix<f64>,
 }
 
@@ -25,38 +27,53 @@ impl<'a> Linear<'a> {
     pub(crate) fn of(problem: &'a Problem) -> Self {
         let fixed = problem.columns.begin + problem.columns.nuisances;
         let gram = problem.gram.view((0, 0), (fixed, fixed)).into_owned();
-        Self { columns: Cow::Borrowed(&problem.whitened[..fixed]), gram }
+        let columns = problem.whitened[..fixed].iter().map(|column| Cow::Borrowed(column.as_slice())).collect();
+        Self { columns, gram }
     }
 
     /// Those of the platform at a point.
     pub(crate) fn fresh(hypothesis: &Hypothesis, point: &Point, now: &Prediction) -> Self {
-        let problem = hypothesis.problem;
-        let begin = point.state.len();
-        let column = |place: usize| {
-            let mut moved = point.clone();
-            let step = if place < begin {
-                let step = STATE_STEP * problem.sigma[place];
-                moved.state[place] += step;
-                step
-            } else {
-                let step = problem.nuisances[place - begin].step;
-                moved.shifts[place - begin] += step;
-                step
-            };
-            // what changes at the beginning alone dies away
-            let rows = if place < begin.min(PHI) { remembered_rows(problem.record) } else { usize::MAX };
-            (hypothesis.variant(&moved, rows), step)
-        };
-        let columns = hypothesis.slopes((0..hypothesis.fixed()).map(column).collect(), now);
-        let gram = gram(&slices(&columns), 0..problem.whitener.rows());
-        Self { columns: Cow::Owned(columns), gram }
+        let all: Vec<usize> = (0..hypothesis.fixed()).collect();
+        let columns = taken(hypothesis, point, now, &all);
+        let gram = gram(&slices(&columns), 0..hypothesis.problem.whitener.rows());
+        Self { columns: columns.into_iter().map(Cow::Owned).collect(), gram }
+    }
+
+    /// Places of the columns by which a step changes what is predicted, where the residual counts `1 / temper`.
+    pub(super) fn moved_by(&self, step: &DVector<f64>, temper: f64) -> Vec<usize> {
+        let moves = |place: &usize| step[*place].powi(2) * self.gram[(*place, *place)] > MOVES * temper;
+        (0..self.columns.len()).filter(moves).collect()
+    }
+
+    /// Some of them those of the platform at a point.
+    pub(super) fn renew(&mut self, hypothesis: &Hypothesis, point: &Point, now: &Prediction, places: &[usize]) {
+        for (&place, column) in places.iter().zip(taken(hypothesis, point, now, places)) {
+            self.columns[place] = Cow::Owned(column);
+        }
+        let all = self.columns();
+        let new: Vec<&[f32]> = places.iter().map(|&place| all[place]).collect();
+        let fresh = products(&all, &new, 0..hypothesis.problem.whitener.rows());
+        for (&place, products) in places.iter().zip(fresh.column_iter()) {
+            self.gram.set_column(place, &products);
+            self.gram.set_row(place, &products.transpose());
+        }
+    }
+
+    /// The columns.
+    pub(crate) fn columns(&self) -> Vec<&[f32]> {
+        self.columns.iter().map(AsRef::as_ref).collect()
+    }
+
+    /// The same by themselves.
+    pub(super) fn into_columns(self) -> Vec<Vec<f32>> {
+        self.columns.into_iter().map(Cow::into_owned).collect()
     }
 
     /// Normal equations of these columns and others.
     pub(crate) fn joined(&self, others: &[Vec<f32>], residual: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
         let fixed = self.columns.len();
         let more = others.len();
-        let mut columns = slices(&self.columns);
+        let mut columns = self.columns();
         columns.extend(slices(others));
         let mut right = slices(others);
         let residual = narrow(residual);
@@ -68,6 +85,28 @@ impl<'a> Linear<'a> {
         gram.view_mut((fixed, 0), (more, fixed)).copy_from(&fresh.view((0, 0), (fixed, more)).transpose());
         (gram, fresh.column(more).into_owned())
     }
+}
+
+/// Sensitivities of the platform at a point, to some of the beginning and of the nominal parameters.
+fn taken(hypothesis: &Hypothesis, point: &Point, now: &Prediction, places: &[usize]) -> Vec<Vec<f32>> {
+    let problem = hypothesis.problem;
+    let begin = point.state.len();
+    let column = |place: usize| {
+        let mut moved = point.clone();
+        let step = if place < begin {
+            let step = STATE_STEP * problem.sigma[place];
+            moved.state[place] += step;
+            step
+        } else {
+            let step = problem.nuisances[place - begin].step;
+            moved.shifts[place - begin] += step;
+            step
+        };
+        // what changes at the beginning alone dies away
+        let rows = if place < begin.min(PHI) { remembered_rows(problem.record) } else { usize::MAX };
+        (hypothesis.variant(&moved, rows), step)
+    };
+    hypothesis.slopes(places.iter().map(|&place| column(place)).collect(), now)
 }
 
 /// Normal equations at a point, but for the pull of the priors of the nominal parameters.

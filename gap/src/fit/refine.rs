@@ -2,7 +2,7 @@
 //! parameters and beginning along with it.
 
 use gimbal_plant::Effect;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::hypothesis::{Hypothesis, Outcome, Point};
 use super::linear::{Equations, Linear};
@@ -150,6 +150,7 @@ pub(super) fn refined(
     let outcome = hypothesis.evaluate(&point);
     let mut walk = Walk {
         hypothesis: &hypothesis,
+        effort,
         point,
         outcome,
         linear: Linear::of(problem),
@@ -166,13 +167,15 @@ pub(super) fn refined(
         let doubtful = went == Went::Less || went == Went::Nowhere && !turned;
         if effort != Effort::Quick && doubtful && !walk.fresh && walk.refreshes > 0 {
             turned = true;
-            walk.refresh();
+            if let Some((solution, _)) = &last {
+                walk.renew(&solution.coefficients);
+            }
         } else if went == Went::Nowhere {
             break;
         }
     }
     let Walk { point, outcome, linear, gained, .. } = walk;
-    let columns = (gained < STILL).then(|| linear.columns.into_owned());
+    let columns = (gained < STILL).then(|| linear.into_columns());
     (finish(&hypothesis, point, outcome, last), columns)
 }
 
@@ -205,6 +208,7 @@ type Made = (Solution, Vec<Vec<f32>>);
 /// A fit under way.
 struct Walk<'a> {
     hypothesis: &'a Hypothesis<'a>,
+    effort: Effort,
     point: Point,
     outcome: Outcome,
     linear: Linear<'a>,
@@ -218,11 +222,18 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn refresh(&mut self) {
+    /// Takes the sensitivities anew: all of them where the fit is for those, or those to what a step moves.
+    fn renew(&mut self, step: &DVector<f64>) {
+        let (hypothesis, outcome) = (self.hypothesis, &self.outcome);
         self.refreshes -= 1;
         self.fresh = true;
-        self.gained = 0.0;
-        self.linear = Linear::fresh(self.hypothesis, &self.point, &self.outcome.prediction);
+        if self.effort == Effort::Thorough {
+            self.gained = 0.0;
+            self.linear = Linear::fresh(hypothesis, &self.point, &outcome.prediction);
+        } else {
+            let moved = self.linear.moved_by(step, linearised(hypothesis.problem, outcome.square));
+            self.linear.renew(hypothesis, &self.point, &outcome.prediction, &moved);
+        }
     }
 
     /// One iteration: a step that lowers the cost, with sensitivities taken anew or damping where none does. The
@@ -262,7 +273,7 @@ impl Walk<'_> {
                 return Some((went, (solution, sensitivities)));
             }
             if !self.fresh && self.refreshes > 0 && step.promised > WORTH {
-                self.refresh();
+                self.renew(&step.solution.coefficients);
                 refreshed = true;
                 system = equations(&self.linear, &self.outcome);
             } else {

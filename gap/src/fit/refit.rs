@@ -49,8 +49,7 @@ pub(crate) fn rebase(problem: &mut Problem, fit: &Fit) {
     let hypothesis = Hypothesis::new(problem, &fit.set, &fit.values);
     let point = fit.point(problem);
     let linear = Linear::fresh(&hypothesis, &point, &hypothesis.predict(&point));
-    let columns = linear.columns.into_owned();
-    problem.replace(columns);
+    problem.replace(linear.into_columns());
 }
 
 /// What one effect of a fit contributes, whitened.

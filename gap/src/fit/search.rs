@@ -7,7 +7,7 @@ use super::extension::{Extension, Glimpse, best_by_effect, extensions, glimpses_
 use super::formulations::{self, extend, otherwise};
 use super::gross::gross;
 use super::heavy::heavy;
-use super::less::with_less;
+use super::less::{with_another, with_less};
 use super::refine::{Effort, STILL, refined};
 use super::refit::rebase;
 use super::stiction::{built_up, elsewhere};
@@ -53,7 +53,7 @@ const FAR: f64 = 2e3;
 const MOST_TURNS: usize = 5;
 const GOES_ON: f64 = 0.95;
 /// Share of what a set is behind the best one that an effect more must promise, by the equations linearised.
-const AS_MUCH: f64 = 0.5;
+pub(super) const AS_MUCH: f64 = 0.5;
 /// What the shifts of nominal parameters cost that are none any more: what stands for effects so large is no null.
 const NOT_NOMINAL: f64 = 1e3;
 /// How often sets that are less than the best are tried, while that changes.
@@ -140,6 +140,8 @@ impl Looked {
             let best = fits.first().map(|best| best.set.clone());
             with_less(problem, &mut fits);
             sort(problem, &null, &mut fits);
+            with_another(problem, &null, &mut fits);
+            sort(problem, &null, &mut fits);
             if best == fits.first().map(|best| best.set.clone()) {
                 break;
             }
@@ -170,8 +172,12 @@ pub(super) fn is_closed(problem: &Problem, fit: &Fit) -> bool {
 }
 
 /// Whether a fit closes the gap and nothing in the library promises more.
-pub(super) fn is_all(problem: &Problem, fit: &Fit) -> bool {
-    is_closed(problem, fit) && !extensions(problem, fit).iter().any(|extension| promising(problem, extension))
+fn is_all(problem: &Problem, fit: &Fit) -> bool {
+    is_closed(problem, fit) && !any_promising(problem, &extensions(problem, fit))
+}
+
+fn any_promising(problem: &Problem, extensions: &[Extension]) -> bool {
+    extensions.iter().any(|extension| promising(problem, extension))
 }
 
 fn closest<'a>(null: &'a Fit, fits: &'a [Fit]) -> &'a Fit {
@@ -237,7 +243,8 @@ fn widen(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>, size: usize) {
         fits.iter().filter(|fit| fit.set.0.len() == size).take(if size == 1 { 3 } else { 1 }).collect();
     // beside one that closes the gap, others that are far from it lead to what it leads to
     let best = closest(null, fits);
-    let is_told = is_all(problem, best);
+    let beside_best = is_closed(problem, best).then(|| extensions(problem, best));
+    let is_told = beside_best.as_ref().is_some_and(|all| !any_promising(problem, all));
     if is_closed(problem, best) {
         let least = if is_told { 1.0 } else { CLOSE };
         let gain = |fit: &Fit| null.square - fit.square;
@@ -253,8 +260,10 @@ fn widen(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>, size: usize) {
     let wider: Vec<Fit> = seeds
         .par_iter()
         .flat_map(|seed| {
-            let next = best_by_effect(problem, extensions(problem, seed), EXTENSIONS);
-            next.into_par_iter()
+            let known = beside_best.as_ref().filter(|_| std::ptr::eq(*seed, best));
+            let all = known.cloned().unwrap_or_else(|| extensions(problem, seed));
+            best_by_effect(problem, all, EXTENSIONS)
+                .into_par_iter()
                 .filter(|extension| promising(problem, extension) && leads(seed, extension))
                 .filter_map(|extension| extend(problem, seed, &extension))
         })

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::extension::Extension;
-use super::formulations::extend;
+use super::formulations::{closer, extend};
 use super::hypothesis::{Hypothesis, Point};
 use super::linear::Linear;
 use super::normal::solve;
@@ -40,7 +40,7 @@ pub(super) fn elsewhere(problem: &Problem, fit: &Fit, effort: Effort) -> Option<
     let begins = BEGINS.into_iter().flat_map(|begin| [with(&fit.shifts, begin), with(&nominal, begin)]);
     let from = |shifts| refine(problem, &fit.set, &fit.values, Some(&Fit { shifts, ..fit.clone() }), effort);
     let fitted = begins.collect::<Vec<_>>().into_par_iter().map(from).filter(|other| other.volume.is_finite());
-    fitted.min_by(|a, b| a.cost().total_cmp(&b.cost())).filter(|other| fit.cost() - other.cost() > STILL)
+    fitted.min_by(closer).filter(|other| fit.cost() - other.cost() > STILL)
 }
 
 /// Whether what a fit leaves goes along with what nominal parameters elsewhere would change, beside what they change where they

@@ -10,6 +10,7 @@ use super::set::holds;
 use super::strange::{Stranger, strangers};
 use super::weigh::{Weighed, best, caution, hidden_beside, moves_freely, weigh};
 use crate::fit::{Fit, Problem, Search};
+use crate::record::Signal;
 
 /// Probability of a cause that nothing shows, whether an effect explains the log or none has to; and how sure it can be
 /// that none of the library's is it, from logs with open answers.
@@ -264,8 +265,11 @@ fn cleared<'a>(
     fuller.into_iter().take(FULLER).find(|set| !leaves(set)).unwrap_or(set)
 }
 
-/// A torque on the float turns the platform as an error of the logged rate seems to: `T / H`.
+/// A torque on the float turns the platform as an error of the logged rate seems to, `T / H`, where no reference sees it turn.
 fn like_a_bias(problem: &Problem, found: &[Found]) -> Option<String> {
+    if problem.record.channel(Signal::GimbalAngle).is_some() {
+        return None;
+    }
     let own = found.iter().find(|found| found.effect == "float_torque")?;
     let rate_radps = own.values[0] / problem.base.config.gyro.angular_momentum_nm_s;
     Some(format!(

@@ -94,7 +94,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         solve(&gram, &drive, &chosen, &weights)
     };
     let base = solved(&fit.sensitivities);
-    let left = less(&fit.residual, base.as_ref(), &linear.columns, &fit.sensitivities);
+    let left = less(&fit.residual, base.as_ref(), &linear, &fit.sensitivities);
     let away = steady(problem);
     let mut strangers: Vec<Stranger> = groups(problem, fit)
         .into_par_iter()
@@ -108,7 +108,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
             let mut own =
                 Stranger { of: group.of, gain: gain[0] - gain[1], torques, choice: group.choice, counts: 1.0 };
             if group.on == On::Float && own.nats() > SEEN_AWAY {
-                let then = less(&fit.residual, with.as_ref(), &linear.columns, &others);
+                let then = less(&fit.residual, with.as_ref(), &linear, &others);
                 let seen = Change::new(&left, &then, &away);
                 if seen.is_at_turns() {
                     own.gain = own.gain.min(torques as f64 + 2.0 * seen.told());
@@ -133,10 +133,10 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
 }
 
 /// What a solution leaves of a residual.
-fn less(residual: &[f64], solution: Option<&Solution>, fixed: &[Vec<f32>], others: &[Vec<f32>]) -> Vec<f64> {
+fn less(residual: &[f64], solution: Option<&Solution>, fixed: &Linear, others: &[Vec<f32>]) -> Vec<f64> {
     let mut left = residual.to_vec();
     let coefficients = solution.iter().flat_map(|solution| solution.coefficients.iter());
-    for (coefficient, column) in coefficients.zip(fixed.iter().chain(others)) {
+    for (coefficient, column) in coefficients.zip(fixed.columns().into_iter().chain(slices(others))) {
         left.iter_mut().zip(column).for_each(|(left, own)| *left -= coefficient * f64::from(*own));
     }
     left

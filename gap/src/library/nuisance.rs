@@ -165,9 +165,9 @@ pub fn nuisances(tolerance: &Tolerance, physics: &Physics) -> Vec<Nuisance> {
     let default = tolerance.default_relative;
     let unbalance = &physics.config.unbalance;
     let size = unbalance.x_kg_m.hypot(unbalance.y_kg_m).max(1e-6);
-    // what is logged off by a bias b is what H b on the float would do
-    let bias_nm = physics.config.gyro.angular_momentum_nm_s * tolerance.vehicle_rate_bias_radps;
-    let biased = (bias_nm > 0.0).then(|| added(bias_nm, "bias of the vehicle rate", |p| &mut p.float_nm));
+    let bias_radps = tolerance.vehicle_rate_bias_radps;
+    let biased = (bias_radps > 0.0)
+        .then(|| added(bias_radps, "bias of the vehicle rate", |p| &mut p.measurement.rate_bias_radps));
     let mut all = vec![
         relative(tolerance.friction_level, "friction_level", |p| &mut p.friction.load_factor),
         relative(tolerance.viscous_friction, "bearing viscosity", |p| &mut p.friction.viscous_factor),
@@ -241,7 +241,7 @@ mod tests {
         };
         assert!(of(0.0).is_none());
         let bias = of(2e-5).expect("a nominal parameter");
-        assert!((bias.tolerance / (2e-5 * physics.config.gyro.angular_momentum_nm_s) - 1.0).abs() < 1e-12);
+        assert!((bias.tolerance / 2e-5 - 1.0).abs() < 1e-12);
         assert!((bias.change(&physics, bias.tolerance) / bias.tolerance - 1.0).abs() < 1e-12);
     }
 

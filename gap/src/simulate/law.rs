@@ -43,6 +43,7 @@ pub(super) struct Law<'a, const L: usize> {
     quadratic_nm_s2: Lanes<L>,
     float_nm: Lanes<L>,
     float_kg_m: Lanes<L>,
+    rate_bias_radps: Lanes<L>,
     turns: [Lanes<L>; 3],
     is_turned: bool,
     curved: Lanes<L>,
@@ -87,6 +88,7 @@ impl<'a, const L: usize> Law<'a, L> {
             quadratic_nm_s2: of(&|own| own.friction.quadratic_nm_s2),
             float_nm: of(&|own| own.float_nm),
             float_kg_m: of(&|own| own.float_kg_m),
+            rate_bias_radps: of(&|own| own.measurement.rate_bias_radps),
             turns: [0, 1, 2].map(|axis| of(&|own| own.turned_rad[axis])),
             curved: of(&|own| own.curved),
             is_curved: any(&|own| own.curved.abs() > 0.0),
@@ -209,9 +211,10 @@ impl<'a, const L: usize> Law<'a, L> {
         seen
     }
 
-    /// Accelerations and load, as the platform has them.
+    /// Rate, accelerations and load, as the platform has them.
     #[inline(always)]
     pub(super) fn aligned(&self, now: &mut Now<L>, logged: [f64; 3], load_by_turn: [f64; 2]) {
+        now.rate = now.rate - self.rate_bias_radps;
         if !self.is_turned {
             return;
         }

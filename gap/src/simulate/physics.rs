@@ -189,6 +189,8 @@ pub struct Measurement {
     pub torque_factor: f64,
     /// [N m].
     pub torque_bias_nm: f64,
+    /// Of the logged vehicle rate [rad/s].
+    pub rate_bias_radps: f64,
     /// Inputs logged late by this [s].
     pub skew_s: f64,
     /// Motor torque logged late by this [s].
@@ -224,6 +226,7 @@ impl Default for Measurement {
             pickoff_bias_rad: 0.0,
             torque_factor: 1.0,
             torque_bias_nm: 0.0,
+            rate_bias_radps: 0.0,
             skew_s: 0.0,
             torque_late_s: 0.0,
         }

@@ -1,6 +1,7 @@
 //! How far nominal parameters may go without a gap, and what is one beyond that.
 
 use gimbal_gap::diagnose;
+use gimbal_log::Column;
 use gimbal_model_file::ModelFile;
 use gimbal_servo::Config;
 
@@ -35,6 +36,30 @@ fn a_torque_on_the_float_is_no_gap_within_the_bias_of_the_rate() {
     let log = log_with(Excitation::RateTable, &[("float_torque", vec![torque_nm])]);
     assert_eq!(names(&diagnose(&log, &model)), ["float_torque"]);
     model.tolerance.vehicle_rate_bias_radps = 2e-4;
+    let within = diagnose(&log, &model);
+    assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
+}
+
+/// It shifts the rate at which the bearing turns around and no more: a reference sees no drift.
+#[test]
+fn a_bias_of_the_rate_is_no_gap_beside_a_reference_that_sees_no_drift() {
+    let case = Case {
+        seed: 23,
+        excitation: Excitation::RateTable,
+        seconds: SECONDS,
+        effects: Vec::new(),
+        drift: 0.6,
+        noise: 0.1,
+    };
+    let mut simulated = simulate(&case);
+    simulated.columns[4].iter_mut().for_each(|rate_radps| *rate_radps += 1e-3);
+    let mut log = as_log(&simulated);
+    // a reference of 1e-5 rad
+    let read = |phi_rad: &f64| 1e-5 * (phi_rad / 1e-5).round();
+    log.set(Column::GimbalAngle, simulated.columns[8].iter().map(read).collect());
+    let mut model = ModelFile::default();
+    assert_ne!(report(&diagnose(&log, &model))["verdict"], "no_gap");
+    model.tolerance.vehicle_rate_bias_radps = 2e-3;
     let within = diagnose(&log, &model);
     assert_eq!(report(&within)["verdict"], "no_gap", "{:?}", names(&within));
 }

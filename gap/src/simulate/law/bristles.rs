@@ -4,7 +4,7 @@ use super::Law;
 use crate::simulate::lanes::Lanes;
 
 /// How often a step of bristles is taken, each time by the rate at its end of the last.
-const PASSES: usize = 3;
+const PASSES: usize = 2;
 
 /// Share of the friction that bristles have after a step, and how fast that goes on then [1/s]: of the share before, of the clamp's
 /// before, and of the clamp's after.
@@ -66,9 +66,9 @@ impl<const L: usize> Law<'_, L> {
     fn bends(&self, from: Lanes<L>, [before, w]: [Lanes<L>; 2], step_s: f64) -> Bends<L> {
         let fast = |w: Lanes<L>| w.abs().above(self.slip_radps, w.abs(), self.slip_radps);
         let (begin, end) = (fast(before), fast(w));
-        let over_twice = 1.0 / (begin + end);
+        let over_sum = 1.0 / (begin + end);
         // one over the displacements of the step, m: exp(-m) is 1 / (1 + m + m^2 / 2), and the clamp goes on a line
-        let along = self.follows_rad.abs() * (2.0 / step_s) * over_twice;
+        let along = self.follows_rad.abs() * (2.0 / step_s) * over_sum;
         let whole = 1.0 / (along * along + along + 0.5);
         let (left, mean) = (along * whole, (along + 0.5) * whole);
         let (zero, one) = (Lanes::all(0.0), Lanes::all(1.0));
@@ -76,7 +76,7 @@ impl<const L: usize> Law<'_, L> {
         let reaches = far.above(one, one / far, one);
         let bending = far.above(one, reaches, zero);
         let blend = |exponential: Lanes<L>, straight: Lanes<L>| exponential + self.straight * (straight - exponential);
-        let rate = end * over_twice * (2.0 / step_s);
+        let rate = end * over_sum * (2.0 / step_s);
         Bends {
             of: [
                 blend(along * left, one - reaches),

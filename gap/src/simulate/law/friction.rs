@@ -2,6 +2,7 @@
 
 use super::Law;
 use crate::simulate::GRAVITY_MPS2;
+use crate::simulate::corner::Corners;
 use crate::simulate::lanes::{Lanes, side, within};
 use crate::simulate::now::Now;
 use crate::simulate::physics::BuildUp;
@@ -135,7 +136,8 @@ impl<const L: usize> Law<'_, L> {
         let [before, zeta_before] = from;
         let friction = &self.physics[lane].friction;
         let (along, slip) = (friction.presliding_rad, self.slip_radps[lane]);
-        let clamp = |w: f64| within(w / slip, 1.0) + friction.corner.rounding(w / slip);
+        let corner = Corners::new([self.corner[lane]]);
+        let clamp = |w: f64| within(w / slip, 1.0) + corner.rounding(Lanes::all(w / slip))[0];
         let full = |w: f64| if friction.builds_up == BuildUp::OnClamp { clamp(w) } else { side(w) };
         let clamped = if friction.builds_up == BuildUp::LoadAlone {
             (self.viscous[lane].torque_nm(rate.abs()) * friction.viscous_factor / level.max(1e-30)).min(1.0)
