@@ -41,7 +41,9 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
             fit
         })
         .collect();
-    less.into_iter().for_each(|fit| take_in(problem, fits, fit));
+    for fit in less {
+        take_in(problem, fits, fit);
+    }
 }
 
 /// Sets with another effect in the place of one of the best set's, where the others lead to one that may come to as much: a
@@ -73,7 +75,9 @@ pub(super) fn with_another(problem: &Problem, null: &Fit, fits: &mut Vec<Fit>) {
             })
         })
         .collect();
-    others.into_iter().for_each(|fit| take_in(problem, fits, fit));
+    for fit in others {
+        take_in(problem, fits, fit);
+    }
 }
 
 /// With one fit more, in the place of those of the same effects that leave more.
