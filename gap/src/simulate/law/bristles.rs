@@ -4,7 +4,7 @@ use super::Law;
 use crate::simulate::lanes::Lanes;
 
 /// How often a step of bristles is taken, each time by the rate at its end of the last.
-const PASSES: usize = 2;
+const PASSES: usize = 3;
 
 /// Share of the friction that bristles have after a step, and how fast that goes on then [1/s]: of the share before, of the clamp's
 /// before, and of the clamp's after.
