@@ -6,7 +6,7 @@
 
 use gimbal_model_file::ModelFile;
 
-use crate::fit::{Effort, Fit, Ground, Known, Problem, Search, Set, ended, look, null, refine};
+use crate::fit::{Effort, Fit, Ground, Known, Problem, Search, Set, ended, is_near, look, null, refine};
 use crate::record::Record;
 
 /// A fit may leave this much of the noise that was expected, and no less.
@@ -14,8 +14,6 @@ const TOO_QUIET: f64 = 0.98;
 /// How sure it must be that noise of low frequency was taken too high: few lines that hide what is slow, and thirty parameters
 /// take some of it [nats].
 const TOO_HIGH: f64 = 12.0;
-/// What a fit near the noise leaves of it.
-const NEAR: f64 = 1.1;
 /// How often the noise is taken again.
 const AGAIN: usize = 2;
 
@@ -156,11 +154,6 @@ impl<'a> Measured<'a> {
             best = still.clone();
         }
     }
-}
-
-/// Whether a fit is near the noise.
-fn is_near(problem: &Problem, fit: &Fit) -> bool {
-    fit.square < NEAR * problem.whitener.count() as f64
 }
 
 /// A fit under another noise, if its effects are looked for there.

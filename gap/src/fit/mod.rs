@@ -48,7 +48,7 @@ pub(crate) use refine::{is_idle, linearised, stand, standard_errors};
 pub(crate) use refit::rebase;
 pub use refit::{refit, without};
 pub use search::{Search, Set, null, search};
-pub(crate) use search::{closed_at, ended, look};
+pub(crate) use search::{closed_at, ended, is_near, look};
 pub(crate) use shapes::servo_answer;
 pub(crate) use signals::{difference, of_channel, predicted, residual as raw_residual};
 pub(crate) use tried::Tried;

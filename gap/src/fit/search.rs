@@ -47,6 +47,8 @@ const SINGLES: usize = 6;
 const EXTENSIONS: usize = 4;
 /// What a fit that closes the gap leaves of the noise.
 const CLOSED: f64 = 1.02;
+/// What one near the noise leaves of it.
+const NEAR: f64 = 1.1;
 /// What a fit takes away from where on the sensitivities without its effects mislead beside it.
 const FAR: f64 = 2e3;
 /// How often it is taken further at most, and what of its square it leaves as long as it gets there.
@@ -169,6 +171,11 @@ pub(crate) fn closed_at(problem: &Problem) -> f64 {
 
 pub(super) fn is_closed(problem: &Problem, fit: &Fit) -> bool {
     fit.square <= closed_at(problem)
+}
+
+/// Whether a fit is near the noise.
+pub(crate) fn is_near(problem: &Problem, fit: &Fit) -> bool {
+    fit.square < NEAR * problem.whitener.count() as f64
 }
 
 /// Whether a fit closes the gap and nothing in the library promises more.
