@@ -4,7 +4,7 @@
 #[path = "../examples/corpus/mod.rs"]
 mod corpus;
 
-use corpus::{Excitation, NOISE, ROW_S, Simulated, as_log, between, rng, rows, sensed};
+use corpus::{Excitation, NOISE, ROW_S, SENSED, Simulated, as_log, between, rng, rows, sensed};
 use gimbal_gap::{diagnose, judge::Verdict};
 use gimbal_log::Column::{AccelX, AccelY, AccelZ, GyroAngle, Time, VehicleRate};
 use gimbal_model_file::ModelFile;
@@ -147,6 +147,14 @@ fn advance(x: &mut States, [from, to]: [&Row; 2], noise_rad: [f64; 2], config: &
 
 /// A run, the loop's own noise of so much at each row.
 fn simulated(elements: &Elements, rows: &[Row], loop_rad: f64) -> Simulated {
+    let mut noise = NOISE;
+    noise[3] *= 0.1;
+    noise[5] *= 0.1;
+    sensed_with(noise, elements, rows, loop_rad)
+}
+
+/// The same, with noise of the sensors that the loop does not see.
+fn sensed_with(noise: [f64; SENSED], elements: &Elements, rows: &[Row], loop_rad: f64) -> Simulated {
     let config = Config::consistent();
     let mut rng = rng(SEED, 3);
     let mut x = [0.0; ELEMENTS + MOST];
@@ -154,9 +162,6 @@ fn simulated(elements: &Elements, rows: &[Row], loop_rad: f64) -> Simulated {
         advance(&mut x, [&rows[0], &rows[0]], [0.0, 0.0], &config, elements);
     }
     let in_loop: Vec<f64> = rows.iter().map(|_| loop_rad * rng.sample::<f64, _>(StandardNormal)).collect();
-    let mut noise = NOISE;
-    noise[3] *= 0.1;
-    noise[5] *= 0.1;
     let mut simulated = Simulated::default();
     for (k, pair) in rows.windows(2).enumerate() {
         let row = &pair[0];
@@ -249,4 +254,19 @@ fn a_loop_that_shakes_itself_is_no_effect() {
     }
     let [told, seen] = [&diagnosis, &by_shape].map(|own| own.record.rate_noise.rms_radps);
     assert!((seen / told - 1.0).abs() < 0.1, "{seen:e} and {told:e} rad/s");
+}
+
+#[test]
+fn steps_of_a_log_whose_noise_the_loop_sees_are_none_of_the_pickoff() {
+    let (loop_rad, step_rad) = (1e-6, 2.134e-6);
+    let mut noise = NOISE;
+    noise[5] = 0.0;
+    noise[6] *= 0.1;
+    let mut log = as_log(&sensed_with(noise, &Elements::none(), &manoeuvre(), loop_rad));
+    let theta_rad = log.column(GyroAngle).expect("the pick-off").iter();
+    log.set(GyroAngle, theta_rad.map(|angle| (angle / step_rad).round() * step_rad).collect());
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    let decision = diagnosis.decision.as_ref().expect("a decision");
+    let names: Vec<&str> = decision.found.iter().map(|found| found.effect).collect();
+    assert_eq!(decision.verdict, Verdict::NoGap, "{names:?}");
 }

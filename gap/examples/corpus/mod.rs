@@ -64,7 +64,7 @@ pub const NOISE: [f64; SENSED] = [
     PICKOFF_NOISE_RAD,
     TORQUE_NOISE_NM,
 ];
-const SENSED: usize = 7;
+pub const SENSED: usize = 7;
 /// Time between two rows [s].
 pub const ROW_S: f64 = 1e-3;
 

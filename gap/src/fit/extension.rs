@@ -1,10 +1,14 @@
 //! One candidate more in a fit, by the linear equations there: what it would add.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::normal::{drive, of_any_scale, slices, solve};
+use super::normal::{Solution, drive, of_any_scale, slices, solve};
 use super::pull::Pull;
 use super::{Fit, Problem};
+
+/// How often walls are looked for anew.
+const MOST_TURNS: usize = 6;
 
 /// What an effect would add, without a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,58 +32,70 @@ pub(super) struct Extension {
 
 /// Every candidate more, at a fit.
 pub(super) fn extensions(problem: &Problem, fit: &Fit) -> Vec<Extension> {
-    let columns = slices(&problem.whitened);
-    let mut drive = drive(&columns, &fit.residual);
-    // priors pull the shifts that the fit has already
-    let (chosen, mut precision) = problem.chosen_at(&fit.set.0, &fit.values);
-    let begin = problem.columns.begin;
-    let pull = Pull::new(problem, &precision, &fit.shifts);
-    for (place, slope) in pull.slope.iter().enumerate() {
-        drive[begin + place] -= slope;
-        precision[begin + place] = pull.curvature[place];
-    }
-    let base = solve(&problem.gram, &drive, &chosen, &precision).map_or(0.0, |solution| solution.evidence);
+    let drive = drive(&slices(&problem.whitened), &fit.residual);
+    let alone =
+        between_walls(problem, fit, &drive, &fit.set.0).map_or(0.0, |(solution, pull)| evidence(&solution, &pull));
     (0..problem.candidates.len())
         .into_par_iter()
-        .map(|index| {
-            if fit.set.0.iter().any(|&has| problem.candidates[has].effect == problem.candidates[index].effect) {
-                return Extension::of(index);
-            }
-            let mut set = fit.set.0.clone();
-            set.push(index);
-            let (wide, mut wide_precision) = problem.chosen_at(&set, &fit.values);
-            let mut drive = drive.clone();
-            // a released parameter is no longer pulled back
-            let wide_pull = Pull::new(problem, &wide_precision, &fit.shifts);
-            for place in 0..fit.shifts.len() {
-                drive[begin + place] += pull.slope[place] - wide_pull.slope[place];
-            }
-            wide_precision[begin..begin + fit.shifts.len()].copy_from_slice(&wide_pull.curvature);
-            let released = wide_pull.walls - pull.walls - 0.5 * (pull.cost - wide_pull.cost);
-            let candidate = &problem.candidates[index];
-            let Some(solution) = solve(&problem.gram, &drive, &wide, &wide_precision) else {
-                return Extension::of(index);
-            };
-            let amplitudes: Vec<f64> = if candidate.releases.is_empty() {
-                let from = wide.len() - candidate.probes.len();
-                (from..wide.len()).map(|place| solution.coefficients[place]).collect()
-            } else {
-                vec![0.0; candidate.releases.len()]
-            };
-            // there is no inertia below zero
-            let below_zero = candidate.effect == "flexible_mode" && amplitudes.first().is_none_or(|own| *own <= 0.0);
-            let sane = candidate.holds_at(&amplitudes) && !below_zero;
-            let sizes = (wide.len() - candidate.probes.len()..wide.len()).zip(&candidate.prior);
-            let scale_free: f64 =
-                sizes.map(|(place, (_, sigma))| of_any_scale(*sigma, solution.covariance[(place, place)].sqrt())).sum();
-            let gain = if sane {
-                solution.evidence + scale_free - base - released - (candidate.siblings as f64).ln()
-            } else {
-                f64::NEG_INFINITY
-            };
-            Extension { index, gain, amplitudes }
-        })
+        .map(|index| extension(problem, fit, &drive, index, alone).unwrap_or_else(|| Extension::of(index)))
         .collect()
+}
+
+/// One candidate more than a fit whose equations have some evidence alone; none where they say nothing of it.
+fn extension(problem: &Problem, fit: &Fit, drive: &DVector<f64>, index: usize, alone: f64) -> Option<Extension> {
+    let candidate = &problem.candidates[index];
+    if fit.effects.contains(&candidate.effect) {
+        return None;
+    }
+    let set: Vec<usize> = fit.set.0.iter().copied().chain([index]).collect();
+    let (solution, pull) = between_walls(problem, fit, drive, &set)?;
+    let own = solution.coefficients.len() - candidate.probes.len()..solution.coefficients.len();
+    let amplitudes: Vec<f64> = if candidate.releases.is_empty() {
+        own.clone().map(|place| solution.coefficients[place]).collect()
+    } else {
+        vec![0.0; candidate.releases.len()]
+    };
+    // there is no inertia below zero
+    let below_zero = candidate.effect == "flexible_mode" && amplitudes.first().is_none_or(|own| *own <= 0.0);
+    if below_zero || !candidate.holds_at(&amplitudes) {
+        return None;
+    }
+    let error = |place: usize| solution.covariance[(place, place)].sqrt();
+    let scale_free: f64 = own.zip(&candidate.prior).map(|(place, (_, sigma))| of_any_scale(*sigma, error(place))).sum();
+    let gain = evidence(&solution, &pull) + scale_free - alone - (candidate.siblings as f64).ln();
+    Some(Extension { index, gain, amplitudes })
+}
+
+/// The equations of a set at a fit, with the walls of the tolerances that their solution ends at: solved until those stand.
+fn between_walls(problem: &Problem, fit: &Fit, drive: &DVector<f64>, set: &[usize]) -> Option<(Solution, Pull)> {
+    let (chosen, natural) = problem.chosen_at(set, &fit.values);
+    let (begin, shifts) = (problem.columns.begin, &fit.shifts);
+    let mut ahead = shifts.clone();
+    let mut found = None;
+    for _ in 0..MOST_TURNS {
+        let pull = Pull::ahead(problem, &natural, shifts, &ahead);
+        let (mut drive, mut precision) = (drive.clone(), natural.clone());
+        for (place, slope) in pull.slope.iter().enumerate() {
+            drive[begin + place] -= slope;
+            precision[begin + place] = pull.curvature[place];
+        }
+        let solution = solve(&problem.gram, &drive, &chosen, &precision)?;
+        let next: Vec<f64> =
+            shifts.iter().enumerate().map(|(place, shift)| shift + solution.coefficients[begin + place]).collect();
+        let stand = next.iter().zip(&ahead).zip(&problem.nuisances);
+        let stand = stand.map(|((next, ahead), own)| own.is_beyond(*next) == own.is_beyond(*ahead)).all(|same| same);
+        found = Some((solution, pull));
+        if stand {
+            break;
+        }
+        ahead = next;
+    }
+    found
+}
+
+/// Evidence of a solution, up to what all at one fit share; a wall is no knowledge of its parameter.
+fn evidence(solution: &Solution, pull: &Pull) -> f64 {
+    solution.evidence - pull.walls - 0.5 * pull.cost
 }
 
 impl Extension {

@@ -11,7 +11,7 @@ use super::normal::{Solution, gram, narrow, products, slices, solve};
 use super::pull::Pull;
 use crate::simulate::Prediction;
 
-/// What the shift of a nominal parameter by itself must change so that it matters how it does [nats].
+/// Square of what the shift of a nominal parameter by itself must change, over the noise, so that it matters how it does [1].
 const MOVES: f64 = 100.0;
 /// Place of the gimbal's angle at the beginning, which does not die away.
 const PHI: usize = 9;

@@ -6,12 +6,14 @@
 //! ```
 //!
 //! beyond `LEAST_HZ`, where the loop is open, and at rows about which theta moves less than half a step: elsewhere the loop saw
-//! what is between the rows. A share of one is a pick-off that steps, one of zero a converter behind it. Where noise that the
-//! loop does not see is as large as the steps, every reading is off by both, and the share is that of the steps' power:
+//! what is between the rows. The share is that of what the loop sees in the power of e, of which the steps make
 //!
 //! ```text
-//! share = (q^2 / 12) / noise^2
+//! steps = (q^2 / 12) / mean(e^2)
 //! ```
+//!
+//! A pick-off that steps has a share of one, or of `steps` where the rest of e is noise that the loop does not see; a converter
+//! behind the loop has none, or all but `steps` where that rest is the loop's own noise.
 
 use realfft::num_complex::Complex;
 
@@ -26,32 +28,32 @@ const LEAST_SHARE: f64 = 0.125;
 const SLOW: f64 = 0.5;
 /// Fewest rows.
 const LEAST_ROWS: usize = 60;
-/// Share from which on the loop sees the steps, as what is added behind them goes back to a wrong one; and standard errors by
-/// which it must be away from that, or from none.
-const SEEN: f64 = 0.1;
+/// Standard errors by which a share must be nearer to those of a pick-off than to those of a converter behind it, or less near.
 const SURE: f64 = 4.0;
 /// Standard errors by which steps that the noise hides must be seen, and how far off their power the share may be.
 const SURE_HIDDEN: f64 = 3.5;
 const POWER: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
-/// What the loop has of the steps, and its standard error.
+/// What the loop sees of e, its standard error, and what the steps make of e.
 struct Share {
     share: f64,
     error: f64,
+    steps: f64,
 }
 
 /// Whether the loop sees steps of this size; none where this log does not tell.
 pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<bool> {
-    let Share { share, error } = share(problem, fit, step_rad)?;
-    let seen = share > SEEN && share > SURE * error;
-    (seen || share + SURE * error < SEEN).then_some(seen)
+    let Share { share, error, steps } = share(problem, fit, step_rad)?;
+    let off = |shares: [f64; 2]| shares.map(|own| (share - own).abs()).into_iter().fold(f64::INFINITY, f64::min);
+    let nearer = off([0.0, 1.0 - steps]) - off([1.0, steps]);
+    (nearer.abs() > SURE * error).then_some(nearer > 0.0)
 }
 
 /// Whether the loop sees steps that are no larger than noise which it does not see.
 pub(super) fn loop_sees_hidden(problem: &Problem, fit: &Fit, step_rad: f64) -> bool {
     let power = (step_rad / problem.noise[0]).powi(2) / 12.0;
     share(problem, fit, step_rad)
-        .is_some_and(|Share { share, error }| share > SURE_HIDDEN * error && POWER.contains(&(share / power)))
+        .is_some_and(|Share { share, error, .. }| share > SURE_HIDDEN * error && POWER.contains(&(share / power)))
 }
 
 /// What is in the motor torque of steps of this size; none where too few rows tell.
@@ -88,7 +90,9 @@ fn share(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<Share> {
     let square: f64 = slow.iter().map(|&k| answers[k] * answers[k]).sum();
     let share = with / square;
     let rest: f64 = slow.iter().map(|&k| (torques[k] - share * answers[k]).powi(2)).sum();
-    Some(Share { share, error: (rest / slow.len() as f64 / square).sqrt() })
+    let count = slow.len() as f64;
+    let power = slow.iter().map(|&k| errors[k] * errors[k]).sum::<f64>() / count / (1.0 - 2.0 * least_hz * period_s);
+    Some(Share { share, error: (rest / count / square).sqrt(), steps: (step_rad * step_rad / 12.0 / power).min(1.0) })
 }
 
 /// A series through a filter.

@@ -48,29 +48,44 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
     let near = (peak / stop_rad - 1.0).abs() < NEAR;
     let (enters, lasts) = if near { (ENTERS_NEAR, FLAT_NEAR) } else { (ENTERS, FLAT) };
     let (band, least_scatter) = ((SHARE * peak).max(NOISES * noise), noise.max(least_count(theta_rad, &finite)));
+    let runs = runs(theta_rad, peak - band, least);
+    let stands_still = |&(start, end): &(usize, usize)| {
+        // it comes in with a rate, and stands still at once; one that the log begins on it leaves with one
+        let beside = start.checked_sub(least).unwrap_or(end + least);
+        let came = theta_rad.get(beside).map_or(0.0, |angle| peak - angle.abs());
+        let onward = came * 0.5 * (end - start) as f64 / least as f64;
+        let steep = came > CAME * band && onward > ONWARD * band && peak > LEAST_STOP * stop_rad;
+        let scatter = scatter_rad(&theta_rad[start..end]).max(least_scatter);
+        steep && onward > ROUND * scatter || came > enters * scatter && onward > lasts * scatter
+    };
+    let mut still: Vec<(usize, usize)> = runs.iter().copied().filter(stands_still).collect();
+    // where others are stops, so is what the log begins on, however slowly it is left
+    if let (Some(&(own, _)), Some(&(first, end))) = (still.first(), runs.first())
+        && first < least.min(own)
+    {
+        still.push((first, end));
+    }
     let mut on_stop = vec![false; theta_rad.len()];
     let mut level = Vec::new();
-    let mut start = 0_usize;
-    for k in 0..=theta_rad.len() {
-        if k < theta_rad.len() && theta_rad[k].abs() > peak - band {
-            continue;
-        }
-        // it comes in with a rate, and stands still at once
-        let came = start.checked_sub(least).map_or(0.0, |before| peak - theta_rad[before].abs());
-        let onward = came * 0.5 * (k - start) as f64 / least as f64;
-        let steep = came > CAME * band && onward > ONWARD * band && peak > LEAST_STOP * stop_rad;
-        let stands_still = || {
-            let scatter = scatter_rad(&theta_rad[start..k]).max(least_scatter);
-            steep && onward > ROUND * scatter || came > enters * scatter && onward > lasts * scatter
-        };
-        if k - start > least && stands_still() {
-            level.extend(theta_rad[start..k].iter().map(|value| value.abs()));
-            on_stop[start..k].fill(true);
-        }
-        start = k + 1;
+    for (start, end) in still {
+        level.extend(theta_rad[start..end].iter().map(|value| value.abs()));
+        on_stop[start..end].fill(true);
     }
     level.sort_by(f64::total_cmp);
     level.get(level.len() / 2).map(|&level_rad| Plateau { level_rad, on_stop })
+}
+
+/// Rows from and to between which a pick-off stays beyond an angle, for more than so many.
+fn runs(theta_rad: &[f64], beyond_rad: f64, least: usize) -> Vec<(usize, usize)> {
+    let inside = (0..=theta_rad.len()).filter(|&k| theta_rad.get(k).is_none_or(|angle| !(angle.abs() > beyond_rad)));
+    let mut start = 0;
+    inside
+        .filter_map(|end| {
+            let run = (start, end);
+            start = end + 1;
+            (run.1 > run.0 + least).then_some(run)
+        })
+        .collect()
 }
 
 /// Scatter of most of the samples, as that of a normal distribution between its quartiles.
@@ -120,6 +135,26 @@ mod tests {
         assert!((own.level_rad / 1.35e-3 - 1.0).abs() < 2e-3, "{}", own.level_rad);
         assert_eq!(plateau(&read, 1e-3, STOP_RAD), None);
         assert_eq!(plateau(&noisy(1.4e-3, f64::MAX, 2e-3, 1.4e-5), 1e-3, 1.43e-3), None);
+    }
+
+    #[test]
+    fn closed_form_a_log_that_begins_on_a_stop_shows_it() {
+        let noise = |k: usize| 3e-7 * ((k * 7919 % 13) as f64 / 6.0 - 1.0);
+        // left with 1e-4 rad a row, and so slowly that nothing tells
+        for (leaves_rad, is_one) in [(1e-4, true), (1e-8, false)] {
+            let leaves = |k: usize| (leaves_rad * k.saturating_sub(400) as f64).min(0.8 * STOP_RAD);
+            let mut read: Vec<f64> = (0..2000).map(|k| noise(k) - STOP_RAD + leaves(k)).collect();
+            let own = plateau(&read, 1e-3, STOP_RAD);
+            assert_eq!(
+                own.is_some_and(|own| own.on_stop[..400].iter().all(|on| *on)),
+                is_one,
+                "{leaves_rad} rad a row"
+            );
+            // it comes onto the other one
+            read.extend((0..600).map(|k| noise(k) + (1e-4 * k as f64).min(STOP_RAD)));
+            let own = plateau(&read, 1e-3, STOP_RAD).expect("the other stop");
+            assert!(own.on_stop[..400].iter().chain(&own.on_stop[2100..]).all(|on| *on), "{leaves_rad} rad a row");
+        }
     }
 
     #[test]
