@@ -13,6 +13,7 @@ use crate::place::{Band, Regime, Span, Spectrum, block_shares, regimes, spans};
 use crate::record::{BEGINNING_S, Data, Record, faults};
 use crate::settle::{Measured, Settled, settled};
 use crate::shake::shaken;
+use crate::still::{at_rest, closest_as_balanced};
 use crate::touch::touched;
 
 /// No fit that leaves more than this of the noise comes near a log.
@@ -104,6 +105,13 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     };
     read.quieten(&crate::library::platform(model));
     let mut on = Measured::new(&read, model);
+    let mut is_still = false;
+    if let Some(inputs) = at_rest(&on.problem, &on.nominal) {
+        drop(on);
+        read.stands_still(inputs);
+        is_still = true;
+        on = Measured::new(&read, model);
+    }
     // the sooner, the less is fitted with a noise of the rate that is not all
     let mut is_shaken = false;
     if on.is_near()
@@ -119,6 +127,11 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     if let Some(hushed) = read.hushed(&whole.search.closest().prediction) {
         drop(whole);
         read = hushed;
+        whole = settled(&read, model);
+    }
+    if !is_still && let Some(inputs) = at_rest(&whole.problem, closest_as_balanced(&whole.search)) {
+        drop(whole);
+        read.stands_still(inputs);
         whole = settled(&read, model);
     }
     if !is_shaken && let Some(rate_radps) = shaken(&whole.problem, whole.search.closest()) {

@@ -28,6 +28,7 @@ pub mod report;
 mod settle;
 mod shake;
 pub mod simulate;
+mod still;
 mod touch;
 mod window;
 

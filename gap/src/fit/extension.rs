@@ -82,8 +82,11 @@ fn between_walls(problem: &Problem, fit: &Fit, drive: &DVector<f64>, set: &[usiz
         let solution = solve(&problem.gram, &drive, &chosen, &precision)?;
         let next: Vec<f64> =
             shifts.iter().enumerate().map(|(place, shift)| shift + solution.coefficients[begin + place]).collect();
-        let stand = next.iter().zip(&ahead).zip(&problem.nuisances);
-        let stand = stand.map(|((next, ahead), own)| own.is_beyond(*next) == own.is_beyond(*ahead)).all(|same| same);
+        let stand = next
+            .iter()
+            .zip(&ahead)
+            .zip(&problem.nuisances)
+            .all(|((next, ahead), own)| own.is_beyond(*next) == own.is_beyond(*ahead));
         found = Some((solution, pull));
         if stand {
             break;

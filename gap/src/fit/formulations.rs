@@ -19,6 +19,9 @@ const FINER: [f64; 5] = [0.6, 0.77, 1.0, 1.3, 1.7];
 const OTHERS: [(&str, &[(f64, f64)]); 2] =
     [("cable_hysteresis", &[(1.0, 0.8), (2.0, 0.9), (3.0, 1.15)]), ("stribeck", &[(1.0, 1.2), (2.0, 0.83)])];
 
+/// Place of the value that says which.
+const WAY: usize = 2;
+
 /// A fit with one candidate more, in the formulation that leaves least.
 pub(super) fn extend(problem: &Problem, from: &Fit, extension: &Extension) -> Option<Fit> {
     Some(otherwise(problem, from, extension, first(problem, from, extension)?))
@@ -46,7 +49,8 @@ pub(super) fn otherwise(problem: &Problem, from: &Fit, extension: &Extension, fi
     let other = |(way, ratio): &(f64, f64)| {
         let mut own = problem.candidates[extension.index].values(&extension.amplitudes);
         own[1] *= ratio;
-        own.push(*way);
+        own.resize(own.len().max(WAY + 1), 0.0);
+        own[WAY] = *way;
         with(problem, from, extension.index, own)
     };
     let other = others(problem, extension).par_iter().map(other).min_by(closer);

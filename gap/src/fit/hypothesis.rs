@@ -7,13 +7,15 @@ use super::normal::narrow;
 use super::pull::Pull;
 use super::signals::{difference, residual};
 use super::{Problem, Set};
-use crate::library::{Nuisance, apply};
+use crate::library::{Nuisance, WOUND, apply};
 use crate::simulate::{Begin, Physics, Prediction, Variant, predict, predict_each};
 
 /// Step of a sensitivity to a value, in its logarithm or over its size.
 const STEP: f64 = 5e-4;
 /// Standard deviation of the logarithm of a parameter that is not a size.
 const SHAPE_SIGMA: f64 = 1.2;
+/// The same of the share of its torque with which a cable begins.
+const WOUND_SIGMA: f64 = 0.5;
 
 /// One try: values of the effects, shifts of the nominal parameters, the beginning.
 #[derive(Debug, Clone)]
@@ -56,6 +58,17 @@ impl Outcome {
     }
 }
 
+/// How a value follows a step that is not in its logarithm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Goes {
+    /// By as much.
+    Along,
+    /// Small steps multiply it: the size of a cable's loop goes along with its displacement where that is long.
+    ByShares,
+    /// Between one and less than one: how a cable's loop begins, of all its torque.
+    Within,
+}
+
 /// One value that is fitted beside the nominal parameters.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Free {
@@ -65,8 +78,7 @@ pub(crate) struct Free {
     pub(crate) log: bool,
     /// A size that has no scale of its own.
     pub(crate) any_scale: bool,
-    /// A size that small steps multiply: that of a cable's loop goes along with its displacement where that is long.
-    pub(crate) grows: bool,
+    pub(crate) goes: Goes,
     pub(crate) sigma: f64,
     pub(crate) center: f64,
 }
@@ -198,7 +210,9 @@ impl<'a> Hypothesis<'a> {
             let step = step[fixed + place];
             if free.log {
                 *value *= step.clamp(-1.0, 1.0).exp();
-            } else if free.grows && step.abs() < value.abs() {
+            } else if free.goes == Goes::Within {
+                *value = (*value + step).clamp(-1.0, 1.0);
+            } else if free.goes == Goes::ByShares && step.abs() < value.abs() {
                 *value *= (step / *value).exp();
             } else {
                 *value += step;
@@ -229,8 +243,12 @@ fn free(problem: &Problem, set: &Set, start: &[Vec<f64>]) -> Vec<Free> {
                 // cycles and phases move little from where they were found
                 (if parameter.unit == "rad" { 1.0 } else { 0.02 * own.abs().max(1.0) }, own)
             };
-            let grows = size && candidate.effect == "cable_hysteresis";
-            all.push(Free { effect, value, log, any_scale: size && !log, grows, sigma, center });
+            let goes = if size && candidate.effect == "cable_hysteresis" { Goes::ByShares } else { Goes::Along };
+            all.push(Free { effect, value, log, any_scale: size && !log, goes, sigma, center });
+        }
+        if candidate.effect == "cable_hysteresis" && start[effect].len() > WOUND {
+            let (log, any_scale, goes) = (false, false, Goes::Within);
+            all.push(Free { effect, value: WOUND, log, any_scale, goes, sigma: WOUND_SIGMA, center: 0.0 });
         }
     }
     all

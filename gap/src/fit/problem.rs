@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use super::ground::Ground;
 use super::normal::{gram, narrow, products, slices};
 use super::path::Path;
-use super::pull::Pull;
 use super::shapes::Shapes;
 use super::signals::{Kept, Signals, of_channel, residual, scaled};
 use super::{Fit, Whitener};
@@ -176,13 +175,6 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub(crate) fn torque_column(&self, torque_nm: &[f64]) -> Vec<f32> {
         narrow(&self.path.column(&self.whitener, torque_nm))
-    }
-
-    /// Half the slopes and half the curvatures of the priors of the nominal parameters at their shifts.
-    #[must_use]
-    pub(crate) fn pulled(&self, precision: &[f64], shifts: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let pull = Pull::new(self, precision, shifts);
-        (pull.slope, pull.curvature)
     }
 
     /// Other columns in the place of the first.

@@ -1,10 +1,11 @@
-//! What is asked of a fit once it is made: without some blocks, without one of its effects, as the new nominal point.
+//! What is asked of a fit once it is made: without some blocks, without one of its effects, with columns beside it, as the new
+//! nominal point.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::hypothesis::Hypothesis;
 use super::linear::Linear;
-use super::normal::{self, products, slices, solve};
+use super::normal::{self, Solution, products, slices, solve};
 use super::pull::Pull;
 use super::refine::linearised;
 use super::signals::difference;
@@ -50,6 +51,25 @@ pub(crate) fn rebase(problem: &mut Problem, fit: &Fit) {
     let point = fit.point(problem);
     let linear = Linear::fresh(&hypothesis, &point, &hypothesis.predict(&point));
     problem.replace(linear.into_columns());
+}
+
+/// Precision of a size that may be anything: none, but for what keeps equations regular.
+const FREE: f64 = 1e-9;
+
+/// The linear equations at a fit, with columns of any size beside the nominal parameters and the beginning.
+pub(crate) fn linear_beside(problem: &Problem, linear: &Linear, fit: &Fit, others: &[Vec<f32>]) -> Option<Solution> {
+    let (_, precision) = problem.chosen_at(&fit.set.0, &fit.values);
+    let begin = problem.columns.begin;
+    let pull = Pull::new(problem, &precision, &fit.shifts);
+    let (gram, mut drive) = linear.joined(others, &fit.residual);
+    let mut weights = precision[..begin + problem.columns.nuisances].to_vec();
+    for (place, (slope, curvature)) in pull.slope.iter().zip(&pull.curvature).enumerate() {
+        drive[begin + place] -= slope;
+        weights[begin + place] = *curvature;
+    }
+    weights.extend(others.iter().map(|_| FREE));
+    let chosen: Vec<usize> = (0..drive.len()).collect();
+    solve(&gram, &drive, &chosen, &weights)
 }
 
 /// What one effect of a fit contributes, whitened.

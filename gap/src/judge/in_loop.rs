@@ -36,15 +36,15 @@ const POWER: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
 /// What the loop sees of e, its standard error, and what the steps make of e.
 struct Share {
-    share: f64,
+    seen: f64,
     error: f64,
     steps: f64,
 }
 
 /// Whether the loop sees steps of this size; none where this log does not tell.
 pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<bool> {
-    let Share { share, error, steps } = share(problem, fit, step_rad)?;
-    let off = |shares: [f64; 2]| shares.map(|own| (share - own).abs()).into_iter().fold(f64::INFINITY, f64::min);
+    let Share { seen, error, steps } = share(problem, fit, step_rad)?;
+    let off = |shares: [f64; 2]| shares.map(|own| (seen - own).abs()).into_iter().fold(f64::INFINITY, f64::min);
     let nearer = off([0.0, 1.0 - steps]) - off([1.0, steps]);
     (nearer.abs() > SURE * error).then_some(nearer > 0.0)
 }
@@ -53,7 +53,7 @@ pub(super) fn loop_sees(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<b
 pub(super) fn loop_sees_hidden(problem: &Problem, fit: &Fit, step_rad: f64) -> bool {
     let power = (step_rad / problem.noise[0]).powi(2) / 12.0;
     share(problem, fit, step_rad)
-        .is_some_and(|Share { share, error, .. }| share > SURE_HIDDEN * error && POWER.contains(&(share / power)))
+        .is_some_and(|Share { seen, error, .. }| seen > SURE_HIDDEN * error && POWER.contains(&(seen / power)))
 }
 
 /// What is in the motor torque of steps of this size; none where too few rows tell.
@@ -88,11 +88,11 @@ fn share(problem: &Problem, fit: &Fit, step_rad: f64) -> Option<Share> {
     let answers = filtered(&about, &plans, period_s, answer);
     let with: f64 = slow.iter().map(|&k| answers[k] * torques[k]).sum();
     let square: f64 = slow.iter().map(|&k| answers[k] * answers[k]).sum();
-    let share = with / square;
-    let rest: f64 = slow.iter().map(|&k| (torques[k] - share * answers[k]).powi(2)).sum();
+    let seen = with / square;
+    let rest: f64 = slow.iter().map(|&k| (torques[k] - seen * answers[k]).powi(2)).sum();
     let count = slow.len() as f64;
     let power = slow.iter().map(|&k| errors[k] * errors[k]).sum::<f64>() / count / (1.0 - 2.0 * least_hz * period_s);
-    Some(Share { share, error: (rest / count / square).sqrt(), steps: (step_rad * step_rad / 12.0 / power).min(1.0) })
+    Some(Share { seen, error: (rest / count / square).sqrt(), steps: (step_rad * step_rad / 12.0 / power).min(1.0) })
 }
 
 /// A series through a filter.

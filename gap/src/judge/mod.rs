@@ -1,6 +1,7 @@
 //! From fits to a verdict: which effects, how sure, what else it might be, how far the gap shrinks.
 
 mod against;
+mod at_rest;
 mod closed_loop;
 mod comb;
 mod contradicted;

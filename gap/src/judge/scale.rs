@@ -72,7 +72,7 @@ fn along(scale: &Scale, problem: &Problem, hypothesis: &Hypothesis, fit: &Fit) -
     along.extend(hypothesis.free.iter().map(|free| {
         let effect = fit.effects[free.effect];
         let Some(entry) = Effect::from_name(effect) else { return 0.0 };
-        let unit = entry.parameters()[free.value].unit;
+        let Some(unit) = entry.parameters().get(free.value).map(|own| own.unit) else { return 0.0 };
         // what a sensor adds is not the platform's
         let is_torque = entry.block() != Block::Measurement && (unit.starts_with("N m") || unit.starts_with("kg m"));
         let own = if free.log { 1.0 } else { fit.values[free.effect][free.value] };

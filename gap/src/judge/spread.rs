@@ -63,7 +63,11 @@ impl Spread {
             own.extend(released.map(|at| begin + at));
             let parameters = Effect::from_name(candidate.effect).map_or(&[][..], |entry| entry.parameters());
             for (place, free) in hypothesis.free.iter().enumerate().filter(|(_, free)| free.effect == effect) {
-                let parameter = parameters[free.value];
+                let Some(parameter) = parameters.get(free.value) else {
+                    names.push("the beginning".to_owned());
+                    weights.push(free.precision());
+                    continue;
+                };
                 own.push(fixed + place);
                 names.push(format!("{} {}", candidate.effect, parameter.name));
                 let spread = 0.5 * parameter.low.abs().max(parameter.high.abs());

@@ -22,7 +22,7 @@ use super::input_noise::torque_of_inputs;
 use super::left_over::steady;
 use super::torques::groups;
 use super::turned::Change;
-use crate::fit::{Fit, Linear, Problem, Solution, gram, slices, solve};
+use crate::fit::{Fit, Linear, Problem, Solution, gram, linear_beside, slices};
 
 /// Amplitude that a torque must have beside those before it, over its own: of torques that are nearly alike a difference as
 /// large as nothing makes them takes what no torque does.
@@ -42,9 +42,6 @@ const LIKE_NOISE_COUNTS: f64 = 0.5;
 /// told there alone counts.
 const SEEN_AWAY: f64 = 8.0;
 const ELSEWHERE_NATS: f64 = 40.0;
-/// Precision of a torque's size: none, but for what keeps equations regular.
-const FREE: f64 = 1e-9;
-
 /// How well a group of torques takes what is left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stranger {
@@ -78,21 +75,7 @@ impl fmt::Display for Stranger {
 #[must_use]
 pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
     let linear = Linear::of(problem);
-    let (_, precision) = problem.chosen_at(&fit.set.0, &fit.values);
-    let begin = problem.columns.begin;
-    let fixed = begin + problem.columns.nuisances;
-    let (slopes, curvatures) = problem.pulled(&precision, &fit.shifts);
-    let solved = |others: &[Vec<f32>]| -> Option<Solution> {
-        let (gram, mut drive) = linear.joined(others, &fit.residual);
-        let mut weights = precision[..fixed].to_vec();
-        for (place, (slope, curvature)) in slopes.iter().zip(&curvatures).enumerate() {
-            drive[begin + place] -= slope;
-            weights[begin + place] = *curvature;
-        }
-        weights.extend(others.iter().map(|_| FREE));
-        let chosen: Vec<usize> = (0..drive.len()).collect();
-        solve(&gram, &drive, &chosen, &weights)
-    };
+    let solved = |others: &[Vec<f32>]| linear_beside(problem, &linear, fit, others);
     let base = solved(&fit.sensitivities);
     let left = less(&fit.residual, base.as_ref(), &linear, &fit.sensitivities);
     let away = steady(problem);

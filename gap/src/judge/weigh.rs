@@ -2,7 +2,8 @@
 
 use gimbal_model_file::Tolerance;
 
-use super::against::against;
+use super::against::{BEYOND, against};
+use super::at_rest::{as_constant, is_realistic};
 use super::left_over::steady;
 use super::set::is_part;
 use super::stretch::carried_alone;
@@ -93,9 +94,13 @@ pub(crate) fn weigh(problem: &Problem, search: &Search, tolerance: &Tolerance) -
         })
         .collect();
     best_of_each(&mut all);
-    let excess = (search.null.square - closest.square).max(1.0);
-    let left: Vec<f64> = all.iter().map(|set| set.fit.map_or(f64::NAN, |fit| search.fits[fit].cost())).collect();
-    worth_their_more(&mut all, excess, closed_at(problem), |place| left[place]);
+    if problem.record.is_still() {
+        as_constant(&mut all, |fit, effect| is_realistic(&search.fits[fit], effect));
+    }
+    let fits: Vec<&Fit> = all.iter().filter_map(|set| set.fit.map(|fit| &search.fits[fit])).collect();
+    let squares = [search.null.square, closest.square, closed_at(problem)];
+    let strains = |fit: usize, other: usize| strains(problem, fits[fit], fits[other]);
+    worth_their_more(&mut all, squares, |place| fits[place].cost(), strains);
     against_each_other(&mut all, |effect| alone_worth(problem, search, effect, temper));
     for glimpse in &search.glimpses {
         let effect = problem.candidates[glimpse.index].effect;
@@ -138,15 +143,29 @@ pub(crate) fn best(sets: &[Weighed], of: impl Fn(&Weighed) -> f64) -> Option<&We
 
 /// What a set has more than a smaller one must be worth it: one that takes less of what a gap has beyond the noise than the
 /// other's formulation may leave is less than that one is; and by odds too, where it leaves more than `noise` itself. `left`
-/// is what each of the sets leaves, by its place.
-pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, noise: f64, left: impl Fn(usize) -> f64) {
+/// is what each of the sets leaves, by its place, and `strains` whether one has a nominal parameter beyond its tolerance that
+/// another has as an effect: no formulation explains that.
+pub(crate) fn worth_their_more(
+    sets: &mut [Weighed],
+    [nominal, closest, noise]: [f64; 3],
+    left: impl Fn(usize) -> f64,
+    strains: impl Fn(usize, usize) -> bool,
+) {
+    let is_exact = |set: &Weighed| set.effects.iter().all(|effect| EXACT.contains(effect));
+    // what effects of one formulation take is none of what others may leave
+    let inexact = |other: &Weighed| {
+        let parts =
+            (0..sets.len()).filter(|&part| is_exact(&sets[part]) && is_part(&sets[part].effects, &other.effects));
+        (parts.map(&left).fold(nominal, f64::min) - closest).max(1.0)
+    };
+    let excess: Vec<f64> = sets.iter().map(|set| if is_exact(set) { 0.0 } else { inexact(set) }).collect();
     for index in 0..sets.len() {
         for other in 0..sets.len() {
-            let exact = sets[other].effects.iter().all(|effect| EXACT.contains(effect));
             let closes = left(index) <= noise && left(other) > OPEN * noise;
-            let share = if closes { LEAST_CLOSING } else { LEAST_SHARE };
-            let least = if exact { 0.0 } else { share * excess };
-            let worthless = is_part(&sets[other].effects, &sets[index].effects) && left(other) - left(index) < least;
+            let least = if closes { LEAST_CLOSING } else { LEAST_SHARE } * excess[other];
+            let worthless = is_part(&sets[other].effects, &sets[index].effects)
+                && left(other) - left(index) < least
+                && !strains(other, index);
             let needs = |set: &Weighed| if left(index) > noise { set.rare } else { set.cost };
             let most = sets[other].nats - needs(&sets[other]) + needs(&sets[index]) - 1.0;
             if worthless && sets[index].nats > most {
@@ -154,6 +173,14 @@ pub(crate) fn worth_their_more(sets: &mut [Weighed], excess: f64, noise: f64, le
             }
         }
     }
+}
+
+/// Whether a fit has a nominal parameter beyond its tolerance that another has as an effect.
+fn strains(problem: &Problem, fit: &Fit, other: &Fit) -> bool {
+    let released = other.set.0.iter().filter(|index| !fit.set.0.contains(index));
+    let released = released.flat_map(|&index| problem.candidates[index].releases);
+    let mut places = released.filter_map(|name| problem.nuisance(name));
+    places.any(|place| fit.shifts[place].abs() > BEYOND * problem.nuisances[place].tolerance)
 }
 
 /// Effects that together take much and each alone next to nothing stand against each other: of a motion that the logged
@@ -247,9 +274,25 @@ mod tests {
             ("constant_torque", 100.0, true, true),
         ] {
             let mut sets = [set(&[first], 1e5), set(&[first, "viscous_friction"], 1e5 + 180.0)];
-            worth_their_more(&mut sets, 1e6, noise, |index| left[index]);
+            worth_their_more(&mut sets, [1e6, 0.0, noise], |index| left[index], |_, _| false);
             assert_eq!(sets[1].nats - sets[1].cost > sets[0].nats - sets[0].cost, stays, "beside {first}");
             assert_eq!(sets[1].nats - sets[1].rare > sets[0].nats - sets[0].rare, likelier, "beside {first}, by odds");
+        }
+    }
+
+    #[test]
+    fn closed_form_what_an_exact_effect_takes_and_a_tolerance_that_is_left_are_no_formulations() {
+        // beside the bias, which takes nearly all, the cable takes 2e4 and leaves 400 more than both with a drag
+        let left = [2e4, 600.0, 200.0];
+        for (strains, left_alone, stays) in [(false, 2e4, true), (false, 1e6, false), (true, 1e6, true)] {
+            let mut sets = [
+                set(&["pickoff_bias"], 4.9e5),
+                set(&["cable_hysteresis", "pickoff_bias"], 5e5),
+                set(&["cable_hysteresis", "pickoff_bias", "viscous_friction"], 5e5 + 180.0),
+            ];
+            let left = [left_alone, left[1], left[2]];
+            worth_their_more(&mut sets, [1e6, 0.0, 300.0], |index| left[index], |_, _| strains);
+            assert_eq!(sets[2].nats - sets[2].cost > sets[1].nats - sets[1].cost, stays, "{strains}, {left_alone}");
         }
     }
 

@@ -2,6 +2,9 @@
 
 use crate::simulate::{BuildUp, Fall, Hysteresis, Loop, Physics, Ripple, Stribeck};
 
+/// Place of the value that says how a cable's loop begins: it is the log's own, and none of the effect's.
+pub(crate) const WOUND: usize = 3;
+
 /// Adds an effect to the physics. Unknown names change nothing.
 pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
     let v = |index: usize| values.get(index).copied().unwrap_or(0.0);
@@ -39,14 +42,15 @@ pub fn apply(effect: &str, values: &[f64], physics: &mut Physics) {
         "anisoelasticity" => physics.anisoelasticity += v(0),
         "cable_spring" => physics.spring_nm_per_rad += v(0),
         "cable_hysteresis" => {
-            // a third value says how it is formulated
+            // a third value says how it is formulated, a fourth how it begins
             let formulation = match v(2) {
                 way if way > 2.5 => Loop::Dahl,
                 way if way > 1.5 => Loop::Exponential,
                 way if way > 0.5 => Loop::Stops,
                 _ => Loop::BoucWen,
             };
-            physics.hysteresis = Some(Hysteresis { torque_nm: v(0), displacement_rad: v(1), formulation });
+            let wound = v(WOUND);
+            physics.hysteresis = Some(Hysteresis { torque_nm: v(0), displacement_rad: v(1), formulation, wound });
         }
         "torque_ripple" => {
             let (sine, cosine) = v(2).sin_cos();

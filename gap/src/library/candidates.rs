@@ -2,6 +2,7 @@
 
 use gimbal_plant::{Bound, Effect};
 
+use super::apply::WOUND;
 use crate::simulate::Inputs;
 
 /// One way in which an effect may show: its columns, and what their amplitudes mean.
@@ -218,6 +219,9 @@ impl Candidate {
             #[allow(clippy::float_cmp, reason = "a divisor of exactly 1 marks a secant")]
             let secant = *divisor == 1.0 && self.probes.len() == 1 && probe[0] != 1.0;
             values[index] = if secant { probe[0] * self.secant_factor(amplitudes[index]) } else { amplitudes[index] };
+        }
+        if self.effect == "cable_hysteresis" {
+            values.resize(WOUND + 1, 0.0);
         }
         if let Some(effect) = effect {
             for (value, parameter) in values.iter_mut().zip(effect.parameters()) {

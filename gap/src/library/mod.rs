@@ -5,6 +5,7 @@ mod candidates;
 mod model;
 mod nuisance;
 
+pub(crate) use apply::WOUND;
 pub use apply::apply;
 pub use candidates::{Candidate, Offer, candidates, narrow};
 pub(crate) use candidates::{MODE_DAMPING, NAMED, PROMISE, releases};

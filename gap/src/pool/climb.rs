@@ -8,7 +8,7 @@ use super::joint::{Joint, Local, prior_cost, solve};
 use super::material::Material;
 use super::parameters::{Parameter, parameters};
 use super::set::Effects;
-use crate::fit::{Hypothesis, Linear, Outcome, Point, linearised};
+use crate::fit::{Free, Goes, Hypothesis, Linear, Outcome, Point, linearised};
 use crate::judge::pieces;
 
 const ITERATIONS: usize = 10;
@@ -219,7 +219,11 @@ pub(super) fn placed(hypothesis: &Hypothesis, from: &Point, x: &DVector<f64>) ->
     }
     for (place, free) in hypothesis.free.iter().enumerate() {
         let value = x[fixed + place];
-        point.values[free.effect][free.value] = if free.log { value.exp() } else { value };
+        point.values[free.effect][free.value] = match free {
+            Free { log: true, .. } => value.exp(),
+            Free { goes: Goes::Within, .. } => value.clamp(-1.0, 1.0),
+            Free { .. } => value,
+        };
     }
     point
 }

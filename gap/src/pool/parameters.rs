@@ -1,6 +1,6 @@
 //! What is fitted in several logs at once: nominal parameters, then the values of effects, in one list for all logs.
 
-use crate::fit::Hypothesis;
+use crate::fit::{Goes, Hypothesis};
 use crate::library::Nuisance;
 
 /// What is known of a parameter before any log.
@@ -54,6 +54,8 @@ pub(super) enum Unit {
     Nominal(usize),
     /// All values of an effect of the set.
     Effect(usize),
+    /// How an effect begins: each log's own in any case.
+    Beginning,
 }
 
 /// One coordinate.
@@ -84,7 +86,7 @@ pub(super) fn parameters(hypothesis: &Hypothesis) -> Vec<Parameter> {
     let values = hypothesis.free.iter().map(|free| Parameter {
         prior: Prior::Around { center: free.center, precision: free.precision() },
         any_scale: free.any_scale.then_some(free.sigma),
-        unit: Unit::Effect(free.effect),
+        unit: if free.goes == Goes::Within { Unit::Beginning } else { Unit::Effect(free.effect) },
     });
     nominal.chain(values).collect()
 }

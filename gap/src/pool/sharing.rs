@@ -24,6 +24,7 @@ fn cost(unit: Unit) -> f64 {
     match unit {
         Unit::Nominal(_) => COST_OF_SHIFT,
         Unit::Effect(_) => RARE_SHIFT,
+        Unit::Beginning => 0.0,
     }
 }
 
@@ -31,7 +32,7 @@ fn cost(unit: Unit) -> f64 {
 fn units(parameters: &[Parameter]) -> Vec<Unit> {
     let mut units: Vec<Unit> = Vec::new();
     for parameter in parameters {
-        if !units.contains(&parameter.unit) {
+        if parameter.unit != Unit::Beginning && !units.contains(&parameter.unit) {
             units.push(parameter.unit);
         }
     }
@@ -101,8 +102,9 @@ pub(super) fn fitted(
     starts: Vec<Vec<Point>>,
     apart: &[Vec<Point>],
 ) -> Option<Fitted> {
-    let count = hypotheses(materials, effects).first().map(super::parameters::parameters)?.len();
-    let mut best = climb(materials, effects, &vec![false; count], starts)?;
+    let all = hypotheses(materials, effects).first().map(super::parameters::parameters)?;
+    let shared: Vec<bool> = all.iter().map(|parameter| parameter.unit == Unit::Beginning).collect();
+    let mut best = climb(materials, effects, &shared, starts)?;
     let mut failed: Vec<Unit> = Vec::new();
     for _ in 0..CHANGES {
         let change = |unit: Unit| {

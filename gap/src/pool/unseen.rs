@@ -2,7 +2,7 @@
 //! predicted.
 //!
 //! ```text
-//! p = the least of sum over the other logs of |r_m - B_m (p - a_m)|^2 + priors        everything shared
+//! p = the least of sum over the other logs of |r_m - B_m (p - a_m)|^2 + priors        everything shared but how a log begins
 //! rms of the log predicted free from its first row under the nominal model, and under p
 //! ```
 
@@ -11,6 +11,7 @@ use gimbal_model_file::ModelFile;
 use super::climb::Fitted;
 use super::joint::{Local, solve};
 use super::material::Material;
+use super::parameters::Unit;
 use crate::fit::raw_residual;
 use crate::judge::{Yardstick, in_step};
 use crate::library::platform;
@@ -22,14 +23,14 @@ pub(super) fn unseen(materials: &[Material], fitted: &Fitted, model: &ModelFile)
         return Vec::new();
     }
     let hypotheses = super::climb::hypotheses(materials, &fitted.effects);
-    let all_shared = vec![false; fitted.parameters.len()];
+    let begins: Vec<bool> = fitted.parameters.iter().map(|own| own.unit == Unit::Beginning).collect();
     let of = |log: usize| {
         let others = fitted.locals.iter().enumerate().filter(|(other, _)| *other != log);
         let others: Vec<Local> = others.map(|(_, local)| local.clone()).collect();
-        let joint = solve(&others, &fitted.parameters, &all_shared)?;
+        let joint = solve(&others, &fitted.parameters, &begins)?;
         let begin = others[0].begin.len();
         let mut x = fitted.locals[log].at.clone();
-        for place in 0..fitted.parameters.len() {
+        for place in (0..begins.len()).filter(|&place| !begins[place]) {
             x[fitted.locals[log].begin.len() + place] = joint.x[0][begin + place];
         }
         let mut corrected = hypotheses[log].physics(&super::climb::placed(&hypotheses[log], &fitted.points[log], &x));

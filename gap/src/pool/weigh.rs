@@ -34,9 +34,8 @@ pub(super) fn weigh(
     // place of an effect, and its prior tells how far it goes
     let left = |fitted: &Fitted| fitted.squares.iter().sum::<f64>() + fitted.prior;
     let closest = fits.iter().chain([null]).map(left).fold(f64::MAX, f64::min);
-    let excess = (left(null) - closest).max(1.0);
-    let noise = materials.iter().map(|material| closed_at(&material.problem)).sum();
-    worth_their_more(&mut all, excess, noise, |index| left(&fits[index]));
+    let noise: f64 = materials.iter().map(|material| closed_at(&material.problem)).sum();
+    worth_their_more(&mut all, [left(null), closest, noise], |index| left(&fits[index]), |_, _| false);
     for promise in promises {
         let effects = vec![promise.candidate.effect];
         if !all.iter().any(|set| set.effects == effects) {

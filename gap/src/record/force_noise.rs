@@ -16,7 +16,7 @@ const SLOW_OVER_WHITE: f64 = 2.5;
 const SLOWER: f64 = 2.0;
 
 /// Noise of one axis as logged: a filter takes little of what is slow out of a force that is slow, too.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ForceNoise {
     /// What it has from row to row [m/s2].
     pub white_mps2: f64,

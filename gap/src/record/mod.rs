@@ -130,7 +130,7 @@ impl Record {
                 faults.push(stuck);
                 continue;
             }
-            if values.windows(2).all(|pair| pair[0].to_bits() == pair[1].to_bits()) {
+            if is_constant(values) {
                 faults.push(format!("{} never changes", signal.column().name()));
                 continue;
             }
@@ -245,6 +245,22 @@ impl Record {
         self.notes.push(format!("the loop shakes the gimbal with its own noise, by {rate_radps:.1e} rad/s"));
     }
 
+    /// Whether the specific force is at rest across the gimbal's axis: an unbalance is a constant torque then.
+    pub(crate) fn is_still(&self) -> bool {
+        self.inputs.accel_mps2[..2].iter().all(|axis| is_constant(axis))
+    }
+
+    /// Takes these inputs, in which the specific force is at rest.
+    pub(crate) fn stands_still(&mut self, inputs: Inputs) {
+        for (noise, axis) in self.force_noise.iter_mut().zip(&inputs.accel_mps2) {
+            if is_constant(axis) {
+                *noise = ForceNoise::default();
+            }
+        }
+        self.inputs = inputs;
+        self.notes.push("the specific force stands still: what the log has of it beside its mean is noise".to_owned());
+    }
+
     /// Masks the time on a stop and what follows it for a while.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
     fn leave_out(&mut self, on_stop: &[bool]) {
@@ -288,6 +304,10 @@ fn away(on_stop: &[bool], [comes, settles]: [usize; 2], least: usize) -> Vec<Ran
         free.push(from..rows);
     }
     free
+}
+
+fn is_constant(values: &[f64]) -> bool {
+    values.windows(2).all(|pair| pair[0].to_bits() == pair[1].to_bits())
 }
 
 fn deviation(values: &[f64]) -> f64 {

@@ -77,7 +77,7 @@ pub(crate) fn plateau(theta_rad: &[f64], period_s: f64, stop_rad: f64) -> Option
 
 /// Rows from and to between which a pick-off stays beyond an angle, for more than so many.
 fn runs(theta_rad: &[f64], beyond_rad: f64, least: usize) -> Vec<(usize, usize)> {
-    let inside = (0..=theta_rad.len()).filter(|&k| theta_rad.get(k).is_none_or(|angle| !(angle.abs() > beyond_rad)));
+    let inside = (0..=theta_rad.len()).filter(|&k| !theta_rad.get(k).is_some_and(|angle| angle.abs() > beyond_rad));
     let mut start = 0;
     inside
         .filter_map(|end| {

@@ -11,8 +11,6 @@ use super::{Inputs, Physics};
 pub struct Begin {
     /// phi', theta, theta', four sections, integrator, motor torque, phi.
     pub state: [f64; PLAIN],
-    /// Share of the cable's loop.
-    pub hysteresis: f64,
 }
 
 impl Begin {
@@ -40,6 +38,6 @@ impl Begin {
         }
         state[INTEGRATOR] = torque_nm - servo.lead_time_constants_s[4] * signal;
         state[TORQUE] = torque_nm;
-        Self { state, hysteresis: 0.0 }
+        Self { state }
     }
 }

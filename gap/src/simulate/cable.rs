@@ -85,7 +85,7 @@ mod tests {
 
     /// Share of the full torque after each leg of a way of short steps.
     fn shares(formulation: Loop, legs_rad: &[f64]) -> Vec<f64> {
-        let cable = Hysteresis { torque_nm: 3e-4, displacement_rad: ALONG_RAD, formulation };
+        let cable = Hysteresis { torque_nm: 3e-4, displacement_rad: ALONG_RAD, formulation, wound: 0.0 };
         let (mut share, mut stops) = (0.0, Stops::new([cable].into_iter(), Lanes::<1>::all(0.0)));
         let leg = |leg_rad: &f64| {
             (0..4000).for_each(|_| share = cable.after(0, share, leg_rad / 4000.0, &mut stops));

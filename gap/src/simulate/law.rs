@@ -147,6 +147,11 @@ impl<'a, const L: usize> Law<'a, L> {
         torque
     }
 
+    /// Share of the cable's loop where a run begins.
+    pub(super) fn wound(&self) -> Lanes<L> {
+        Lanes::each(|lane| self.physics[lane].hysteresis.map_or(0.0, |cable| cable.wound))
+    }
+
     /// The cable's stops where a run begins.
     pub(super) fn stops(&self, share: Lanes<L>) -> Stops<L> {
         Stops::new(self.physics.iter().filter_map(|own| own.hysteresis), share)

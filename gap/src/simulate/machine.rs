@@ -137,7 +137,7 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
         let w = now.rate - x[PHI_RATE];
         let zeta = self.law.share(w);
         let friction = self.law.level(now, w) * zeta;
-        let hysteresis = Lanes::each(|lane| begin[lane].hysteresis);
+        let hysteresis = self.law.wound();
         let others = self.law.others(now, &x, hysteresis, |x| self.command_nm(x));
         let u = [friction + others, self.law.float_nm(now), self.law.seen(x[THETA]) - x[THETA]];
         Running {

@@ -151,6 +151,8 @@ pub struct Hysteresis {
     pub displacement_rad: f64,
     /// How it is formulated.
     pub formulation: Loop,
+    /// Share of the torque that it has when a run begins: what turned before that has wound it.
+    pub wound: f64,
 }
 
 /// How the cable's loop is formulated.

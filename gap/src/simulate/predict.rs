@@ -270,11 +270,7 @@ mod tests {
         let variant =
             |begin: Begin, pushed| Variant { physics: base.clone(), begin, rate_radps: None, pushed, rows: usize::MAX };
         let push = Push { rows: &[later, 2 * later], by };
-        let variants = [
-            variant(Begin { state: by, ..rest.clone() }, None),
-            variant(rest.clone(), Some(push)),
-            variant(rest, None),
-        ];
+        let variants = [variant(Begin { state: by }, None), variant(rest.clone(), Some(push)), variant(rest, None)];
         let [begun, pushed, none] =
             predict_each(&variants, &inputs, |_, own| own.gyro_angle_rad).try_into().expect("three");
         let peak = begun.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));

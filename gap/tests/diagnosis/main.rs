@@ -305,3 +305,29 @@ fn a_gyro_out_of_line_goes_with_the_cross_rate() {
     let decision = diagnosis.decision.as_ref().expect("a decision");
     assert_eq!(decision.goes_with().map(|stranger| stranger.of), Some("cross rate, to the gyro"));
 }
+
+/// What the gimbal turned by before a log has wound its cable, and nothing in the log says how far.
+#[test]
+fn a_cable_that_was_wound_before_the_log_is_told_by_its_values() {
+    let truth = [6e-5, 0.11];
+    let case = Case {
+        seed: 23,
+        excitation: Excitation::RateTable,
+        seconds: 24.0,
+        effects: vec![("cable_hysteresis", truth.to_vec())],
+        drift: 0.6,
+        noise: 1.0,
+    };
+    let whole = as_log(&simulate(&case));
+    let mut log = Log::default();
+    log.time.period_s = 1e-3;
+    for column in LEAST.into_iter().chain([Column::MotorTorque]) {
+        log.set(column, whole.column(column).expect("logged")[9000..].to_vec());
+    }
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(names(&diagnosis), ["cable_hysteresis"]);
+    let found = &diagnosis.decision.as_ref().expect("a decision").found[0];
+    for ((value, error), truth) in found.values.iter().zip(&found.errors).zip(truth) {
+        assert!((value - truth).abs() < 2.0 * error, "{value:e} +- {error:e} of {truth:e}");
+    }
+}

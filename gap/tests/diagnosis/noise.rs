@@ -85,6 +85,32 @@ fn much_slow_noise_of_a_sensor_is_told() {
     assert!(notes(4e-7).contains(told) && !notes(0.0).contains(told), "{} and {}", notes(4e-7), notes(0.0));
 }
 
+/// On a table that is tilted once the force stands still, and an unbalance would be rid of what the log has of it beside that.
+#[test]
+fn what_an_accelerometer_wanders_by_on_a_table_is_no_unbalance() {
+    let turns = |k: u32| Row {
+        accel_x_mps2: -8.0,
+        accel_y_mps2: -3.0,
+        accel_z_mps2: 4.75,
+        vehicle_rate_radps: 0.3 * (40.0 * (1.9e-3 * f64::from(k)).sin()).tanh(),
+        ..Row::default()
+    };
+    let rows: Vec<Row> = (0..16_000).map(turns).collect();
+    let platform = corpus::drifted(&Config::consistent(), 0.6, 23);
+    let mut simulated = corpus::simulate_rows(&rows, &platform, &[], 0.5, &mut corpus::rng(23, 3));
+    let mut rng = corpus::rng(23, 7);
+    for place in [1, 2, 3] {
+        let mut wanders_mps2 = 0.0;
+        for value in &mut simulated.columns[place] {
+            wanders_mps2 += 2e-3 * rng.sample::<f64, _>(StandardNormal) - 1e-2 * wanders_mps2;
+            *value += wanders_mps2;
+        }
+    }
+    let diagnosis = diagnose(&as_log(&simulated), &ModelFile::default());
+    assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:?}", names(&diagnosis));
+    assert!(report(&diagnosis)["notes"].to_string().contains("stands still"), "{:#}", report(&diagnosis)["notes"]);
+}
+
 /// A pick-off that steps does so in the loop, and the motor answers.
 #[test]
 fn steps_of_a_converter_behind_the_loop_are_no_quantised_pickoff() {
