@@ -105,11 +105,9 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     };
     read.quieten(&crate::library::platform(model));
     let mut on = Measured::new(&read, model);
-    let mut is_still = false;
     if let Some(inputs) = at_rest(&on.problem, &on.nominal) {
         drop(on);
         read.stands_still(inputs);
-        is_still = true;
         on = Measured::new(&read, model);
     }
     // the sooner, the less is fitted with a noise of the rate that is not all
@@ -129,7 +127,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         read = hushed;
         whole = settled(&read, model);
     }
-    if !is_still && let Some(inputs) = at_rest(&whole.problem, closest_as_balanced(&whole.search)) {
+    if let Some(inputs) = at_rest(&whole.problem, closest_as_balanced(&whole.search)) {
         drop(whole);
         read.stands_still(inputs);
         whole = settled(&read, model);

@@ -6,6 +6,7 @@
 //! ```
 
 use crate::fit::{Fit, Linear, Problem, Search, difference, linear_beside, narrow};
+use crate::record::{deviation, is_constant, mean};
 use crate::simulate::{Inputs, predict};
 
 /// What the force of a table may wander by within the log, over parts of so many seconds [m/s2].
@@ -15,13 +16,17 @@ const PART_S: f64 = 0.5;
 const SURE_NATS: f64 = 12.0;
 const OFF: f64 = 4.0;
 
-/// The inputs with the force at its mean where the outputs show that it stands still; none where they do not.
+/// The inputs with the force at its mean where the outputs show that it stands still; none where they do not, or where none of it
+/// may.
 pub(crate) fn at_rest(problem: &Problem, fit: &Fit) -> Option<Inputs> {
     let (record, physics) = (problem.record, &fit.physics);
     let part = record.inputs.rows_of(PART_S).max(1);
     let mut inputs = record.inputs.clone();
-    let still = inputs.accel_mps2.iter_mut().filter(|axis| wanders_mps2(axis, part) < WANDERS_MPS2);
-    still.for_each(|axis| *axis = vec![mean(axis); axis.len()]);
+    let may_stand = |axis: &&mut Vec<f64>| !is_constant(axis) && wanders_mps2(axis, part) < WANDERS_MPS2;
+    let held = inputs.accel_mps2.iter_mut().filter(may_stand).map(|axis| *axis = vec![mean(axis); axis.len()]).count();
+    if held == 0 {
+        return None;
+    }
     inputs.complete(&problem.base.config.bearing, record.inputs.turned_rad[0]);
     let held = predict(physics, &inputs, &fit.begin, record.rows());
     let column = narrow(&problem.whiten(difference(record, &held, &fit.prediction, 1.0)));
@@ -43,10 +48,5 @@ pub(crate) fn closest_as_balanced(search: &Search) -> &Fit {
 /// Standard deviation of the means of parts.
 fn wanders_mps2(values: &[f64], part: usize) -> f64 {
     let means: Vec<f64> = values.chunks_exact(part).map(mean).collect();
-    let middle = mean(&means);
-    mean(&means.iter().map(|own| (own - middle).powi(2)).collect::<Vec<f64>>()).sqrt()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
+    deviation(&means)
 }

@@ -14,7 +14,7 @@ use crate::simulate::{Begin, Physics, Prediction, Variant, predict, predict_each
 const STEP: f64 = 5e-4;
 /// Standard deviation of the logarithm of a parameter that is not a size.
 const SHAPE_SIGMA: f64 = 1.2;
-/// The same of the share of its torque with which a cable begins.
+/// Standard deviation of the share of its torque with which a cable begins.
 const WOUND_SIGMA: f64 = 0.5;
 
 /// One try: values of the effects, shifts of the nominal parameters, the beginning.

@@ -306,12 +306,16 @@ fn away(on_stop: &[bool], [comes, settles]: [usize; 2], least: usize) -> Vec<Ran
     free
 }
 
-fn is_constant(values: &[f64]) -> bool {
+pub(crate) fn is_constant(values: &[f64]) -> bool {
     values.windows(2).all(|pair| pair[0].to_bits() == pair[1].to_bits())
 }
 
-fn deviation(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+pub(crate) fn deviation(values: &[f64]) -> f64 {
+    let mean = mean(values);
     (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
