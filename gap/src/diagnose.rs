@@ -113,10 +113,10 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     // the sooner, the less is fitted with a noise of the rate that is not all
     let mut is_shaken = false;
     if on.is_near()
-        && let Some(rate_radps) = shaken(&on.problem, &on.nominal)
+        && let Some(by) = shaken(&on.problem, &on.nominal)
     {
         drop(on);
-        read.is_shaken(rate_radps);
+        read.is_shaken(by.motor_nm, by.rate_radps);
         is_shaken = true;
         on = Measured::new(&read, model);
     }
@@ -132,9 +132,9 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         read.stands_still(inputs);
         whole = settled(&read, model);
     }
-    if !is_shaken && let Some(rate_radps) = shaken(&whole.problem, whole.search.closest()) {
+    if !is_shaken && let Some(by) = shaken(&whole.problem, whole.search.closest()) {
         drop(whole);
-        read.is_shaken(rate_radps);
+        read.is_shaken(by.motor_nm, by.rate_radps);
         whole = settled(&read, model);
     }
     if let Some(touched) = touched(&whole) {

@@ -14,8 +14,11 @@ const TOO_QUIET: f64 = 0.98;
 /// How sure it must be that noise of low frequency was taken too high: few lines that hide what is slow, and thirty parameters
 /// take some of it [nats].
 const TOO_HIGH: f64 = 12.0;
-/// How often the noise is taken again.
+/// How often the noise is taken again; and how often from a whole search that leaves far less, as single effects were all that
+/// it was taken from.
 const AGAIN: usize = 2;
+const AT_LAST: usize = 2;
+const FAR_TOO_HIGH: f64 = 120.0;
 
 /// A search whose noise stands.
 pub(crate) struct Settled<'a> {
@@ -26,12 +29,13 @@ pub(crate) struct Settled<'a> {
 }
 
 /// The search whose noise stands.
-pub(crate) fn settled<'a>(record: &'a Record, model: &ModelFile) -> Settled<'a> {
+pub(crate) fn settled<'a>(record: &'a Record, model: &'a ModelFile) -> Settled<'a> {
     Measured::new(record, model).settled()
 }
 
 /// A problem under a noise, by the sensitivities at the fit of the nominal parameters.
 pub(crate) struct Measured<'a> {
+    model: &'a ModelFile,
     ground: Ground<'a>,
     known: Option<Known>,
     pub(crate) problem: Problem<'a>,
@@ -39,15 +43,16 @@ pub(crate) struct Measured<'a> {
     pub(crate) nominal: Fit,
     /// What left this noise, fitted under it.
     carried: Option<Fit>,
-    /// How often the noise may be taken again.
+    /// How often the noise may be taken again, and how often beyond that from a whole search.
     more: usize,
+    last: usize,
     /// Square that the fit which left this noise leaves under it; endless where that is not known.
     stands_at: f64,
 }
 
 impl<'a> Measured<'a> {
     /// The nominal parameters, fitted under the noise that they leave.
-    pub(crate) fn new(record: &'a Record, model: &ModelFile) -> Self {
+    pub(crate) fn new(record: &'a Record, model: &'a ModelFile) -> Self {
         let ground = Ground::new(record, model);
         let mut problem = ground.problem(None);
         let mut nominal = null(&mut problem, None);
@@ -56,7 +61,8 @@ impl<'a> Measured<'a> {
             problem = ground.problem(known.clone());
             nominal = null(&mut problem, Some(&nominal));
         }
-        Self { ground, known, problem, nominal, carried: None, more: AGAIN, stands_at: f64::INFINITY }
+        let (more, last) = (AGAIN, AT_LAST);
+        Self { model, ground, known, problem, nominal, carried: None, more, last, stands_at: f64::INFINITY }
     }
 
     /// Whether the nominal parameters come near the noise.
@@ -82,7 +88,8 @@ impl<'a> Measured<'a> {
                 ended(&mut on.problem, best)
             } else {
                 let search = looked.finished(&mut on.problem);
-                if !on.may_be_beaten_by(search.closest()) {
+                let beaten = on.may_be_beaten_by(search.closest()) || on.is_beaten_at_last(search.closest());
+                if !beaten {
                     return Settled { problem: on.problem, search, known: on.known };
                 }
                 let best = search.closest().clone();
@@ -122,16 +129,27 @@ impl<'a> Measured<'a> {
         self.more > 0 && fit.square < self.stands_at - 2.0 * TOO_HIGH && self.is_beaten_by(fit)
     }
 
+    /// Whether a whole search under the last noise leaves far less; it may be taken again then.
+    fn is_beaten_at_last(&mut self, fit: &Fit) -> bool {
+        let too_high = || self.problem.whitener.too_high(&fit.residual, self.problem.record.inputs.period_s);
+        let beaten = self.more == 0 && self.last > 0 && fit.effects.len() > 1 && too_high() > FAR_TOO_HIGH;
+        if beaten {
+            (self.more, self.last) = (1, self.last - 1);
+            self.ground = Ground::new(self.problem.record, self.model);
+        }
+        beaten
+    }
+
     /// Under the noise that a fit leaves.
     fn again(self, best: &Fit) -> Self {
-        let Self { ground, problem, nominal, more, .. } = self;
+        let Self { model, ground, problem, nominal, more, last, .. } = self;
         let raw = |fit: &Fit| problem.residual(&fit.prediction);
         let known = Some(Known { noise: raw(best), gap: raw(&nominal), platform: best.into() });
         // what is not needed any more is most of the memory
         drop(problem);
         let mut problem = ground.problem(known.clone());
         let nominal = null(&mut problem, Some(&nominal));
-        Self { ground, known, problem, nominal, carried: None, more, stands_at: f64::INFINITY }
+        Self { model, ground, known, problem, nominal, carried: None, more, last, stands_at: f64::INFINITY }
     }
 
     /// Once more, and again where the same effects stay below that noise too.

@@ -40,17 +40,30 @@ struct Elements {
     yields_rad: Vec<f64>,
     /// Full torque of each, of a cable [N m]; none where they carry the friction, each its share.
     cable_nm: Option<Vec<f64>>,
+    /// The most that the motor gives, and what it takes off [N m].
+    ceiling_nm: f64,
+    dead_nm: f64,
 }
 
 impl Elements {
     /// Nothing beside the nominal friction.
     fn none() -> Self {
-        Self { yields_rad: Vec::new(), cable_nm: Some(Vec::new()) }
+        Self { yields_rad: Vec::new(), cable_nm: Some(Vec::new()), ceiling_nm: f64::INFINITY, dead_nm: 0.0 }
+    }
+
+    /// A motor that gives no more than so much.
+    fn ceiling(ceiling_nm: f64) -> Self {
+        Self { ceiling_nm, ..Self::none() }
+    }
+
+    /// A motor that gives so much less.
+    fn dead_zone(dead_nm: f64) -> Self {
+        Self { dead_nm, ..Self::none() }
     }
 
     /// Before the friction, alike in their shares of it.
     fn before_friction(yields_rad: &[f64]) -> Self {
-        Self { yields_rad: yields_rad.to_vec(), cable_nm: None }
+        Self { yields_rad: yields_rad.to_vec(), cable_nm: None, ..Self::none() }
     }
 
     /// A cable after Iwan: alike in their stiffness, yields spread evenly from nothing to twice the displacement.
@@ -60,7 +73,13 @@ impl Elements {
         Self {
             yields_rad: (0..MOST).map(|place| displacement_rad * yields(place)).collect(),
             cable_nm: Some((0..MOST).map(|place| torque_nm * yields(place) / count).collect()),
+            ..Self::none()
         }
+    }
+
+    /// What the motor gives of what it should.
+    fn motor_nm(&self, asked_nm: f64) -> f64 {
+        asked_nm.clamp(-self.ceiling_nm, self.ceiling_nm) - asked_nm.clamp(-self.dead_nm, self.dead_nm)
     }
 
     /// Slopes of the forces: before the friction they slip as the nominal law says of them.
@@ -103,7 +122,7 @@ fn slopes(x: &States, row: &Row, noise_rad: f64, config: &Config, elements: &Ele
     let friction_nm = built_up * bearing.friction_level_nm(radial_mps2, row.accel_z_mps2.abs(), w.abs());
     let unbalance_nm = config.unbalance.x_kg_m * row.accel_y_mps2 - config.unbalance.y_kg_m * row.accel_x_mps2;
     let precession_nm = gyro.angular_momentum_nm_s * x[THETA_RATE];
-    let net_nm = friction_nm + cable_nm + unbalance_nm - precession_nm - x[MOTOR];
+    let net_nm = friction_nm + cable_nm + unbalance_nm - precession_nm - elements.motor_nm(x[MOTOR]);
     let float_nm = gyro.angular_momentum_nm_s * x[PHI_RATE] - gyro.damping_nm_s_per_rad * x[THETA_RATE];
     slopes[PHI] = x[PHI_RATE];
     slopes[PHI_RATE] = net_nm / servo.gimbal_inertia_kg_m2;
@@ -165,7 +184,7 @@ fn sensed_with(noise: [f64; SENSED], elements: &Elements, rows: &[Row], loop_rad
     let mut simulated = Simulated::default();
     for (k, pair) in rows.windows(2).enumerate() {
         let row = &pair[0];
-        simulated.push(sensed(row, x[THETA] + in_loop[k], x[MOTOR]), noise, x[PHI], &mut rng);
+        simulated.push(sensed(row, x[THETA] + in_loop[k], elements.motor_nm(x[MOTOR])), noise, x[PHI], &mut rng);
         advance(&mut x, [row, &pair[1]], [in_loop[k], in_loop[k + 1]], &config, elements);
     }
     simulated
@@ -269,4 +288,22 @@ fn steps_of_a_log_whose_noise_the_loop_sees_are_none_of_the_pickoff() {
     let decision = diagnosis.decision.as_ref().expect("a decision");
     let names: Vec<&str> = decision.found.iter().map(|found| found.effect).collect();
     assert_eq!(decision.verdict, Verdict::NoGap, "{names:?}");
+}
+
+/// Noise in the loop rounds the corners of the motor.
+#[test]
+fn corners_of_a_motor_that_the_loop_shakes_are_named_and_leave_nothing() {
+    let (ceiling_nm, dead_nm) = (0.0105, 2e-4);
+    let cases = [
+        (Elements::ceiling(ceiling_nm), "torque_saturation", ceiling_nm),
+        (Elements::dead_zone(dead_nm), "dead_zone", dead_nm),
+    ];
+    for (elements, effect, size_nm) in cases {
+        let diagnosis = diagnose(&as_log(&simulated(&elements, &manoeuvre(), 4e-7)), &ModelFile::default());
+        let decision = diagnosis.decision.as_ref().expect("a decision");
+        let names: Vec<&str> = decision.found.iter().map(|found| found.effect).collect();
+        assert_eq!((names, decision.verdict), (vec![effect], Verdict::Explained), "{:?}", decision.notes);
+        let (value, error) = (decision.found[0].values[0], decision.found[0].errors[0]);
+        assert!((value - size_nm).abs() < 3.0 * error, "{value:e} +- {error:e} of {size_nm:e}");
+    }
 }

@@ -2,8 +2,8 @@
 //! there.
 
 use super::hypothesis::{Point, left};
-use super::refine::Effort;
 use super::signals::peak;
+use super::walk::Effort;
 use super::{Fit, Problem, Set, refine};
 use crate::library::PROMISE;
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::extension::{Extension, first_of_each};
 use super::hypothesis::{Point, left};
-use super::refine::Effort;
+use super::walk::Effort;
 use super::{Fit, Problem, Set, refine};
 use crate::library::NAMED;
 

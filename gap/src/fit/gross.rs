@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::hypothesis::{Point, left};
-use super::refine::Effort;
+use super::walk::Effort;
 use super::{Fit, Problem, Set, refine};
 
 /// A fit of the nominal parameters leaves so many times the noise from where on this is worth the time.

@@ -102,6 +102,7 @@ impl<'a> Ground<'a> {
         let mut base = platform(model);
         let not_looked_for = not_looked_for(model);
         base.config.period_s = record.inputs.period_s;
+        base.motor_noise_nm = record.motor_noise_nm;
         // the float goes as far as the log shows that it goes
         let reached = record.channel(Signal::GyroAngle).map_or(0.0, |channel| peak(&channel.values));
         base.config.gyro.stop_angle_rad =

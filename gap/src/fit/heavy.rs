@@ -3,7 +3,7 @@
 //! tolerance, and no try leaves less than they do; the fit that starts there does.
 
 use super::hypothesis::{Point, left};
-use super::refine::Effort;
+use super::walk::Effort;
 use super::{Fit, Problem, Set, refine};
 use crate::library::MODE_DAMPING;
 

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::extension::{Extension, best_by_effect, extensions, promising};
 use super::formulations::extend;
-use super::refine::Effort;
 use super::search::{AS_MUCH, polish, same};
+use super::walk::Effort;
 use super::{Fit, Problem, Set, refine};
 use crate::simulate::GRAVITY_MPS2;
 
@@ -25,7 +25,7 @@ pub(super) fn with_less(problem: &Problem, fits: &mut Vec<Fit>) {
         .enumerate()
         .take(LOOKED_AT)
         .flat_map(|(index, fit)| {
-            let others = [straightened, levelled].into_iter().filter_map(|of| of(problem, fit));
+            let others = [straightened, levelled, as_constant].into_iter().filter_map(|of| of(problem, fit));
             let near = lesser(fit, index == 0).chain(others).map(move |less| (fit, less, false));
             near.chain(late_otherwise(problem, fit).map(move |less| (fit, less, true)))
         })
@@ -163,6 +163,17 @@ fn levelled(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
         _ => return None,
     };
     if more > 0.0 && more.is_finite() { exchanged(problem, fit, place, "friction_level", more) } else { None }
+}
+
+/// A set with a constant torque in the place of a torque sensor's bias, or the other way round: a platform that has come to rest
+/// under one reads as under the other, and a set that grew by the one never met the other.
+fn as_constant(problem: &Problem, fit: &Fit) -> Option<(Set, Vec<Vec<f64>>)> {
+    let (place, instead) = match (at(fit, "torque_bias"), at(fit, "constant_torque")) {
+        (Some(place), None) => (place, "constant_torque"),
+        (None, Some(place)) => (place, "torque_bias"),
+        _ => return None,
+    };
+    exchanged(problem, fit, place, instead, fit.values[place][0])
 }
 
 /// Place of an effect in a fit.

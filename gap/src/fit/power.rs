@@ -33,6 +33,11 @@ const SHOWN_NATS: f64 = 1.5;
 /// Corners that are tried of the slope 2, and of the slope 1: that one must bring more, as it goes on rising where
 /// nothing is measured [Hz], [nats].
 const CORNERS_HZ: [f64; 10] = [0.3, 0.6, 1.2, 2.4, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
+/// The lowest one of a walk, which rises as long as a log is: what rises below so many times the lowest frequency that is
+/// measured, and is likelier by so much than none, may [Hz], [nats].
+const WALK_HZ: f64 = 0.05;
+const UNMEASURED: f64 = 2.0;
+const WALKS_NATS: f64 = 8.0;
 const FLICKER_CORNERS_HZ: [f64; 3] = [0.05, 1.0, 10.0];
 const FLICKER_ENDS_HZ: [f64; 3] = [25.0, 60.0, 150.0];
 const FLICKER_NATS: f64 = 3.5;
@@ -77,7 +82,7 @@ pub enum Slow {
 }
 
 impl Slow {
-    /// All that are tried, and what each must bring [nats].
+    /// All that are tried beside none, and what each must bring [nats].
     fn all() -> impl Iterator<Item = (Self, f64)> {
         let steep = CORNERS_HZ.map(|corner_hz| (Self::Steep(corner_hz, 1), SHOWN_NATS));
         let flicker = FLICKER_CORNERS_HZ.map(|corner_hz| (Self::Flicker(corner_hz), FLICKER_NATS));
@@ -85,7 +90,7 @@ impl Slow {
         let behind = FILTER_ORDERS
             .into_iter()
             .flat_map(|order| FILTERS_HZ.map(|end_hz| (Self::Steep(end_hz, order), SHOWN_NATS)));
-        std::iter::once((Self::None, 0.0)).chain(steep).chain(flicker).chain(filtered).chain(behind)
+        steep.into_iter().chain(flicker).chain(filtered).chain(behind)
     }
 
     fn at(self, hz: f64) -> f64 {
@@ -289,15 +294,16 @@ impl Bands {
     /// -2 ln of the likelihood, and the shapes, with l at most so large and `1 + f_c / f` times it at f.
     fn fitted(&self, shapes: &Shapes, most_inputs: f64, corner_hz: f64) -> (f64, Noise) {
         let from_hz = self.hz.first().copied().unwrap_or(0.0);
-        let mut best =
-            (f64::MAX, Noise { white: 1.0, inputs: 0.0, in_loop: [0.0; 3], low: 0.0, slow: Slow::None, from_hz });
         if !self.any() {
-            return best;
+            return (
+                f64::MAX,
+                Noise { white: 1.0, inputs: 0.0, in_loop: [0.0; 3], low: 0.0, slow: Slow::None, from_hz },
+            );
         }
         let mean = self.power.iter().sum::<f64>() / self.power.len() as f64;
         let peak = |of: usize| self.hz.iter().map(|hz| shapes.at(*hz)[of]).fold(1e-300, f64::max);
         let peaks = [0, 1, 2, 3].map(peak);
-        for (slow, must_bring) in Slow::all() {
+        let with = |slow: Slow, must_bring: f64| {
             let basis = |&hz: &f64| {
                 let [inputs, held, on_lines, filtered] = shapes.at(hz);
                 let inputs = inputs / peaks[0] * (1.0 + corner_hz / hz);
@@ -331,12 +337,16 @@ impl Bands {
                     weight * (model.ln() + measured / model)
                 })
                 .sum();
-            let unlikely = unlikely + 2.0 * must_bring;
-            if unlikely < best.0 {
-                let [white, inputs, in_loop @ .., low] = share;
-                let (inputs, in_loop) = (inputs / peaks[0], [0, 1, 2].map(|place| in_loop[place] / peaks[1 + place]));
-                best = (unlikely, Noise { white, inputs, in_loop, low, slow, from_hz });
-            }
+            let [white, inputs, in_loop @ .., low] = share;
+            let (inputs, in_loop) = (inputs / peaks[0], [0, 1, 2].map(|place| in_loop[place] / peaks[1 + place]));
+            (unlikely + 2.0 * must_bring, Noise { white, inputs, in_loop, low, slow, from_hz })
+        };
+        let none = with(Slow::None, 0.0);
+        let likelier = |best: (f64, Noise), own: (f64, Noise)| if own.0 < best.0 { own } else { best };
+        let best = Slow::all().map(|(slow, must_bring)| with(slow, must_bring)).fold(none, likelier);
+        let is_unmeasured = matches!(best.1.slow, Slow::Steep(corner_hz, 1) if corner_hz < UNMEASURED * from_hz);
+        if is_unmeasured && none.0 - best.0 > 2.0 * WALKS_NATS {
+            return (best.0, with(Slow::Steep(WALK_HZ, 1), 0.0).1);
         }
         best
     }

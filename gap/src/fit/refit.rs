@@ -7,8 +7,8 @@ use super::hypothesis::Hypothesis;
 use super::linear::Linear;
 use super::normal::{self, Solution, products, slices, solve};
 use super::pull::Pull;
-use super::refine::linearised;
 use super::signals::difference;
+use super::walk::linearised;
 use super::{BLOCKS, Fit, Problem};
 use crate::simulate::Prediction;
 

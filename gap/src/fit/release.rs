@@ -30,7 +30,7 @@ pub(crate) struct Released {
 impl Released {
     /// Of a platform.
     pub(crate) fn new(draft: &Draft) -> Self {
-        let free = draft.record.after_stops().to_vec();
+        let free = draft.record.anew().to_vec();
         if free.is_empty() {
             return Self::default();
         }

@@ -8,9 +8,10 @@ use super::formulations::{self, extend, otherwise};
 use super::gross::gross;
 use super::heavy::heavy;
 use super::less::{with_another, with_less};
-use super::refine::{Effort, STILL, refined};
+use super::refine::refined;
 use super::refit::rebase;
 use super::stiction::{built_up, elsewhere};
+use super::walk::{Effort, STILL};
 use super::{Fit, Problem, refine};
 
 /// A set of candidates, by index.

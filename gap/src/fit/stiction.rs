@@ -8,8 +8,8 @@ use super::formulations::{closer, extend};
 use super::hypothesis::{Hypothesis, Point};
 use super::linear::Linear;
 use super::normal::solve;
-use super::refine::{Effort, STILL};
 use super::search::{is_closed, is_near};
+use super::walk::{Effort, STILL};
 use super::{Fit, Problem, refine};
 use crate::library::{DAMPING, DISPLACEMENT, SHARPNESS};
 

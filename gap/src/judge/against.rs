@@ -48,6 +48,8 @@ pub(super) fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: 
             beside_presliding(at_a_bound(candidate.effect, values, errors))
         } else if candidate.effect == "presliding" && values[0] < shortest_rad {
             NEVER
+        } else if candidate.effect == "flexible_mode" && is_aliased(record.inputs.period_s, values, errors) {
+            RULED_OUT
         } else if candidate.releases.is_empty() {
             at_a_bound(candidate.effect, values, errors)
         } else if beyond(problem, tolerance, candidate.effect, values, errors) {
@@ -59,6 +61,11 @@ pub(super) fn against(problem: &Problem, search: &Search, fit: &Fit, tolerance: 
     };
     let strained = HELD_COSTS * fit.held(problem).saturating_sub(HELD) as f64;
     fit.set.0.iter().enumerate().map(of).sum::<f64>() + strained
+}
+
+/// Whether a mode rings faster than rows can show, by more than its error: it is a bend of the loop.
+fn is_aliased(period_s: f64, values: &[f64], errors: &[f64]) -> bool {
+    values[1] - errors[1] > 0.5 / period_s
 }
 
 /// What speaks against a longer lag of which a part is pure, which a delay more is by itself; and against a delay more that

@@ -101,7 +101,7 @@ pub(crate) fn in_step(record: &Record, residuals: &[Vec<f64>]) -> Vec<f64> {
 fn counted<'a>(record: &'a Record, channel: &'a Channel) -> impl Iterator<Item = usize> + 'a {
     let rows = (COMES_IN_S / record.inputs.period_s).ceil() as usize;
     let comes_in =
-        move |k: usize| k < rows || record.after_stops().iter().any(|free| free.contains(&k) && k < free.start + rows);
+        move |k: usize| k < rows || record.anew().iter().any(|free| free.contains(&k) && k < free.start + rows);
     (0..record.rows()).filter(move |&k| channel.valid[k] && !comes_in(k))
 }
 

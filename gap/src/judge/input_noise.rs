@@ -5,6 +5,9 @@
 //! dT/dx = -u_y + dT_load/dx sgn w      dT/dy = u_x + dT_load/dy sgn w      dT/dz = dT_load/dz sgn w      dT/dw = T_visc'
 //! ```
 //!
+//! and, where the loop's own noise meets a corner of the motor, which takes a part of it away as no other row does, that noise
+//! over the rows where it does.
+//!
 //! n is what the specific force has from row to row, m what white noise would have that has as much where it is slow as the
 //! noise of an axis or of the rate that is not white.
 
@@ -18,8 +21,28 @@ const EVERY: usize = 7;
 const STEP_MPS2: f64 = 0.05;
 const STEP: f64 = 0.1;
 
+/// Rms of the loop's noise within which it meets a corner.
+const MEETS: f64 = 2.0;
+
 /// Of one row, at some rows.
-pub(super) fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64 {
+pub(super) fn random_torque(problem: &Problem, fit: &Fit, at: &[bool]) -> f64 {
+    torque_of_inputs(problem, fit, at).hypot(torque_of_corners(fit, at))
+}
+
+fn torque_of_corners(fit: &Fit, at: &[bool]) -> f64 {
+    let physics = &fit.physics;
+    let near_nm = MEETS * physics.motor_noise_nm;
+    let meets = |torque_nm: f64| {
+        let given_nm = (torque_nm / physics.measurement.torque_factor).abs();
+        physics.limit_nm.is_some_and(|limit_nm| given_nm > limit_nm - near_nm)
+            || physics.dead_zone_nm > 0.0 && given_nm < near_nm
+    };
+    let all = fit.prediction.motor_torque_nm.iter().zip(at).filter(|(_, at)| **at);
+    let meeting = all.clone().filter(|(torque_nm, _)| meets(**torque_nm)).count() as f64;
+    physics.motor_noise_nm * (meeting / all.count().max(1) as f64).sqrt()
+}
+
+fn torque_of_inputs(problem: &Problem, fit: &Fit, at: &[bool]) -> f64 {
     let (inputs, rate_noise) = (&problem.record.inputs, &problem.record.rate_noise);
     let (bearing, unbalance) = (&fit.physics.config.bearing, &fit.physics.config.unbalance);
     let force_noise = &problem.record.force_noise;

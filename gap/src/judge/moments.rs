@@ -7,7 +7,7 @@
 //! Each moment pays for its choice among all places and lengths; what else takes the same is for the joint fit to say.
 
 use super::group::{Group, On};
-use crate::fit::Problem;
+use crate::fit::{Fit, Problem};
 
 /// Rows that a torque lasts.
 const LENGTHS: [usize; 5] = [1, 4, 16, 64, 256];
@@ -17,6 +17,9 @@ const APART_S: f64 = 0.25;
 /// Rows before and after a moment in which the bearing may not turn around.
 const BEFORE: usize = 100;
 const AFTER: usize = 100;
+/// Torque over its ceiling from which on the noise in the loop meets it, and for how long the loop remembers that [s].
+const AT_CEILING: f64 = 0.97;
+const AFTER_CEILING_S: f64 = 1.0;
 /// What a moment must bring beyond its choice [nats].
 const LEAST: f64 = 5.0;
 
@@ -29,7 +32,7 @@ struct Moment {
 }
 
 /// The moments that a drive speaks for most, a box each; none where chance may be all there is.
-pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
+pub(crate) fn moments(problem: &Problem, fit: &Fit, drive: &[f64]) -> Option<Group> {
     let rows = drive.len();
     let seen = problem.path.seen();
     let mut sums = vec![0.0];
@@ -37,10 +40,11 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
         *sum += value;
         Some(*sum)
     }));
-    // where the bearing turns around, the noise of the rate is moments of torque
-    let mut turning = vec![0_usize];
-    turning.extend(problem.turns.iter().scan(0, |sum, turns| {
-        *sum += usize::from(*turns);
+    // where the bearing turns around, the noise of the rate is moments of torque; at a ceiling what the motor does not
+    let at_ceiling = at_ceiling(problem, fit);
+    let mut disturbed = vec![0_usize];
+    disturbed.extend(problem.turns.iter().zip(&at_ceiling).scan(0, |sum, (turns, at_ceiling)| {
+        *sum += usize::from(*turns || *at_ceiling);
         Some(*sum)
     }));
     let mut all: Vec<Moment> = Vec::new();
@@ -51,7 +55,7 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
         let moment = |row: usize| Moment { row, length, nats: of(row), choice };
         let clear = |row: &usize| {
             let (from, to) = (row.saturating_sub(BEFORE), (row + length + AFTER).min(rows));
-            turning[to] == turning[from]
+            disturbed[to] == disturbed[from]
         };
         all.extend((0..=rows - length).filter(clear).map(moment).filter(|moment| moment.nats > LEAST));
     }
@@ -76,4 +80,17 @@ pub(crate) fn moments(problem: &Problem, drive: &[f64]) -> Option<Group> {
         on: On::Gimbal,
         choice: chosen.iter().map(|moment| moment.choice).sum(),
     })
+}
+
+/// Rows at which a fit has the motor at a ceiling, and those after, as long as the loop remembers them.
+fn at_ceiling(problem: &Problem, fit: &Fit) -> Vec<bool> {
+    let torque_nm = &fit.prediction.motor_torque_nm;
+    let Some(limit_nm) = fit.physics.limit_nm else { return vec![false; torque_nm.len()] };
+    let limit_nm = AT_CEILING * limit_nm * fit.physics.measurement.torque_factor;
+    let after = problem.record.inputs.rows_of(AFTER_CEILING_S);
+    let since = torque_nm.iter().scan(after, |since, torque_nm| {
+        *since = if torque_nm.abs() >= limit_nm { 0 } else { *since + 1 };
+        Some(*since < after)
+    });
+    since.collect()
 }

@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::group::On;
-use super::input_noise::torque_of_inputs;
+use super::input_noise::random_torque;
 use super::left_over::steady;
 use super::torques::groups;
 use super::turned::Change;
@@ -104,7 +104,7 @@ pub(crate) fn strangers(problem: &Problem, fit: &Fit) -> Vec<Stranger> {
         })
         .collect();
     let counts = if problem.turns_mostly { 1.0 } else { AGREED_COUNTS };
-    let inputs_nm = torque_of_inputs(problem, fit, &away);
+    let inputs_nm = random_torque(problem, fit, &away);
     let gain = agreement(problem, fit, &away, inputs_nm).powi(2);
     strangers.push(Stranger { of: AT_RANDOM, gain, torques: 1, choice: 0.0, counts });
     if !problem.turns_mostly {

@@ -53,7 +53,7 @@ pub(crate) fn groups(problem: &Problem, fit: &Fit) -> Vec<Group> {
     let drive = problem.path.drive(&problem.whitener, &fit.residual);
     let lines = motion.carriers().into_iter().filter_map(|carrier| line(problem, &drive, &carrier));
     groups.extend(lines.map(|line| Group { choice: line.choice + WARY_NATS[way], ..line }));
-    groups.extend(moments(problem, &drive));
+    groups.extend(moments(problem, fit, &drive));
     for group in &mut groups {
         let unit = match group.on {
             On::Gimbal => UNIT_NM,

@@ -7,6 +7,5 @@ mod spans;
 
 pub use bands::{Band, Spectrum};
 pub use blocks::shares as block_shares;
-pub(crate) use regimes::erfc;
 pub use regimes::{Regime, regimes};
 pub use spans::{Span, spans};

@@ -70,7 +70,7 @@ pub fn regimes(record: &Record, prediction: &Prediction, contribution: &[f64], c
             }
             let surplus = inside - mean * time;
             let z = surplus / spread.sqrt().max(1e-30);
-            let p = 0.5 * erfc(z / std::f64::consts::SQRT_2);
+            let p = 0.5 * libm::erfc(z / std::f64::consts::SQRT_2);
             (Regime { name, share: inside / all, time_share: time / rows as f64 }, p)
         })
         .collect();
@@ -90,13 +90,4 @@ fn quantile(values: &[f64], share: f64) -> f64 {
         return 0.0;
     }
     *sorted.select_nth_unstable_by(place, f64::total_cmp).1
-}
-
-/// Complementary error function, Abramowitz and Stegun 7.1.26, to 2e-7.
-pub(crate) fn erfc(x: f64) -> f64 {
-    let t = 1.0 / (1.0 + 0.327_591_1 * x.abs());
-    let series =
-        t * (0.254_829_592 + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
-    let tail = series * (-x * x).exp();
-    if x >= 0.0 { tail } else { 2.0 - tail }
 }

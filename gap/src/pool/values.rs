@@ -5,7 +5,6 @@ use super::joint::Joint;
 use super::material::Material;
 use super::parameters::Unit;
 use crate::fit::Hypothesis;
-use crate::place::erfc;
 
 /// Share of its prior's standard deviation from which on a log knows nothing of a value.
 const UNKNOWN: f64 = 0.5;
@@ -201,7 +200,7 @@ pub(super) fn chance(chi2: f64, freedom: usize) -> f64 {
     let n = freedom as f64;
     let spread = 2.0 / (9.0 * n);
     let z = ((chi2 / n).cbrt() - (1.0 - spread)) / spread.sqrt();
-    0.5 * erfc(z / std::f64::consts::SQRT_2)
+    0.5 * libm::erfc(z / std::f64::consts::SQRT_2)
 }
 
 #[cfg(test)]

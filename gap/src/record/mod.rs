@@ -1,5 +1,6 @@
 //! A log made ready: one grid, inputs filled in, outputs with a mask, and what is wrong with the data.
 
+mod anew;
 mod channel;
 mod colour;
 mod converter;
@@ -7,6 +8,7 @@ mod faults;
 mod force_noise;
 mod grid;
 mod hum;
+mod missing;
 mod part;
 mod plateau;
 mod quiet;
@@ -20,8 +22,10 @@ use std::ops::Range;
 use gimbal_log::{Column, Log};
 use gimbal_servo::Config;
 
+use self::anew::worst;
 use self::converter::is_rounded;
 use self::grid::{Grid, filled};
+use self::missing::{Whole, whole};
 use crate::simulate::{Begin, Inputs, Physics};
 pub use channel::{Channel, Signal};
 pub(crate) use converter::{least_noise, phase, whole_step};
@@ -39,14 +43,6 @@ const SHORTEST_S: f64 = 6.0;
 /// Least rms change of the vehicle rate [rad/s] and of the acceleration [m/s2] that excite anything.
 const LEAST_RATE_RADPS: f64 = 1.5e-3;
 const LEAST_ACCEL_MPS2: f64 = 0.1;
-/// How long before a stop a platform that is a little off may be on it already, and how long after it what follows is not in
-/// proportion to what it was let go with [s].
-const COMES_S: f64 = 0.02;
-const SETTLES_S: f64 = 0.5;
-/// Shortest time away from a stop that is worth the ten unknowns of its beginning [s].
-const WORTH_S: f64 = 0.3;
-/// Most of them; shorter ones are left out first.
-const MOST_RUNS: usize = 32;
 /// Shares of the nominal stop between which the float may have touched it.
 const NEAR_STOP: [f64; 2] = [0.95, 1.05];
 
@@ -63,12 +59,16 @@ pub struct Record {
     pub plateau_rad: Option<f64>,
     /// The longest run of rows away from it; none where it was not reached.
     away_from_stop: Option<Range<usize>>,
-    /// Runs of rows that count after it, each to the next.
-    after_stops: Vec<Range<usize>>,
+    /// Runs of rows whose inputs are not known.
+    unknown: Vec<Range<usize>>,
+    /// Runs of rows that count and in which the platform begins anew, after a stop or after what is not known.
+    anew: Vec<Range<usize>>,
     /// Whether the rate changes in steps that are no small part of its noise: what writes the log makes such.
     pub(crate) is_rounded: bool,
     /// Noise of the rate.
     pub rate_noise: RateNoise,
+    /// Rms of the motor's torque that the loop makes of its pick-off's noise [N m].
+    pub(crate) motor_noise_nm: f64,
     /// Noise of the specific force along each axis.
     pub force_noise: [ForceNoise; 3],
     /// What makes a diagnosis impossible, in words.
@@ -103,6 +103,7 @@ impl Record {
         if grid.filled * 5 > grid.rows {
             faults.push(format!("{} of {} rows are missing", grid.filled, grid.rows));
         }
+        let mut unknown: Vec<Range<usize>> = Vec::new();
         let mut driven = |column: Column| -> Vec<f64> {
             let Some(values) = log.column(column) else { return Vec::new() };
             if let Some(stuck) = stuck::told(column.name(), values, period_s) {
@@ -113,7 +114,9 @@ impl Record {
                 }
                 faults.push(stuck);
             }
-            filled(&grid.place(values))
+            let Whole { values, unknown: own } = whole(&grid.place(values));
+            unknown.extend(own);
+            values
         };
         let accel_mps2 = [Column::AccelX, Column::AccelY, Column::AccelZ].map(&mut driven);
         let (rate_radps, cross_radps) = (driven(Column::VehicleRate), driven(Column::CrossRate));
@@ -155,13 +158,23 @@ impl Record {
             channels,
             plateau_rad: None,
             away_from_stop: None,
-            after_stops: Vec::new(),
+            unknown: worst(unknown),
+            anew: Vec::new(),
             is_rounded,
             rate_noise,
+            motor_noise_nm: 0.0,
             force_noise,
             faults,
             notes,
         };
+        record.begins_anew_after_gaps();
+        if let Some(longest) = record.unknown.iter().map(ExactSizeIterator::len).max() {
+            record.notes.push(format!(
+                "inputs are missing {} times, for up to {:.3} s, and shake meanwhile: the platform begins anew after each",
+                record.unknown.len(),
+                longest as f64 * period_s
+            ));
+        }
         record.find_plateau(config);
         record.look_at_excitation(grid.rows as f64 * period_s);
         record
@@ -191,9 +204,9 @@ impl Record {
         self.away_from_stop.is_some()
     }
 
-    /// Runs of rows that count after the float was on or near a stop, each to the next.
-    pub(crate) fn after_stops(&self) -> &[Range<usize>] {
-        &self.after_stops
+    /// Runs of rows that count after the float was on or near a stop, or after what is not known, each to the next.
+    pub(crate) fn anew(&self) -> &[Range<usize>] {
+        &self.anew
     }
 
     fn look_at_excitation(&mut self, length_s: f64) {
@@ -239,10 +252,13 @@ impl Record {
         self.leave_out(on_stop);
     }
 
-    /// Takes the gimbal to be shaken by so much beside what the logged rate has of noise [rad/s].
-    pub(crate) fn is_shaken(&mut self, rate_radps: f64) {
-        self.rate_noise.rms_radps = self.rate_noise.rms_radps.hypot(rate_radps);
-        self.notes.push(format!("the loop shakes the gimbal with its own noise, by {rate_radps:.1e} rad/s"));
+    /// Takes the motor to be as noisy, and the gimbal to be shaken so much beside what the logged rate has of noise.
+    pub(crate) fn is_shaken(&mut self, motor_nm: f64, rate_radps: f64) {
+        self.motor_noise_nm = motor_nm;
+        if rate_radps > 0.0 {
+            self.rate_noise.rms_radps = self.rate_noise.rms_radps.hypot(rate_radps);
+            self.notes.push(format!("the loop shakes the gimbal with its own noise, by {rate_radps:.1e} rad/s"));
+        }
     }
 
     /// Whether the specific force is at rest across the gimbal's axis: an unbalance is a constant torque then.
@@ -260,50 +276,6 @@ impl Record {
         self.inputs = inputs;
         self.notes.push("the specific force stands still: what the log has of it beside its mean is noise".to_owned());
     }
-
-    /// Masks the time on a stop and what follows it for a while.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows")]
-    fn leave_out(&mut self, on_stop: &[bool]) {
-        let period_s = self.inputs.period_s;
-        let rows = |time_s: f64| (time_s / period_s) as usize;
-        let mut free = away(on_stop, [COMES_S, SETTLES_S].map(rows), rows(WORTH_S));
-        if free.len() > MOST_RUNS {
-            free.sort_by_key(|free| std::cmp::Reverse(free.len()));
-            free.truncate(MOST_RUNS);
-            free.sort_by_key(|free| free.start);
-        }
-        for channel in &mut self.channels {
-            let mut valid = vec![false; channel.valid.len()];
-            for free in &free {
-                valid[free.clone()].copy_from_slice(&channel.valid[free.clone()]);
-            }
-            channel.valid = valid;
-        }
-        self.away_from_stop = Some(free.iter().max_by_key(|free| free.len()).cloned().unwrap_or_default());
-        self.after_stops = free.into_iter().filter(|free| free.start > 0).collect();
-        self.notes.push(format!(
-            "the float was {} a stop for {:.2} s; masked with {SETTLES_S} s after each, and the platform begins anew there",
-            if self.plateau_rad.is_some() { "on" } else { "near" },
-            on_stop.iter().filter(|on_stop| **on_stop).count() as f64 * period_s
-        ));
-    }
-}
-
-/// Runs of rows away from a stop: so many before it and after it are not, nor is a run of fewer than the least.
-fn away(on_stop: &[bool], [comes, settles]: [usize; 2], least: usize) -> Vec<Range<usize>> {
-    let rows = on_stop.len();
-    let mut free = Vec::new();
-    let mut from = 0;
-    for k in (0..rows).filter(|&k| on_stop[k]) {
-        if k >= from + comes + least {
-            free.push(from..k - comes);
-        }
-        from = k + 1 + settles;
-    }
-    if rows >= from + least {
-        free.push(from..rows);
-    }
-    free
 }
 
 pub(crate) fn is_constant(values: &[f64]) -> bool {
@@ -317,23 +289,4 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
 pub(crate) fn deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
     (values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len().max(1) as f64).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::away;
-
-    #[test]
-    fn a_stop_takes_the_rows_around_it() {
-        let mut on_stop = vec![false; 100];
-        on_stop[30] = true;
-        on_stop[31] = true;
-        on_stop[60] = true;
-        assert_eq!(away(&on_stop, [2, 5], 10), [0..28, 37..58, 66..100]);
-        // what is too short to be worth it, and a stop that lasts to the end
-        assert_eq!(away(&on_stop, [2, 5], 25), [0..28, 66..100]);
-        on_stop[60..].fill(true);
-        assert_eq!(away(&on_stop, [2, 5], 10), [0..28, 37..58]);
-        assert_eq!(away(&[true; 20], [2, 5], 10), []);
-    }
 }

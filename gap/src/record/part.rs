@@ -45,21 +45,29 @@ impl Record {
             hums_hz: channel.hums_hz.clone(),
             converter: channel.converter,
         };
+        let inside = |gap: &Range<usize>| {
+            gap.start.saturating_sub(rows.start)..gap.end.saturating_sub(rows.start).min(rows.len())
+        };
+        let unknown = self.unknown.iter().map(inside).filter(|gap| !gap.is_empty()).collect();
         let mut notes = self.notes.clone();
         notes
             .push(format!("{why}: {from_s:.1} s to {to_s:.1} s after the first row, {which}, are taken by themselves"));
-        Some(Self {
+        let mut part = Self {
             first_s: self.first_s + from_s,
             inputs,
             channels: self.channels.iter().map(channel).collect(),
             plateau_rad: self.plateau_rad,
             away_from_stop: None,
-            after_stops: Vec::new(),
+            unknown,
+            anew: Vec::new(),
             is_rounded: self.is_rounded,
             rate_noise: self.rate_noise.clone(),
+            motor_noise_nm: self.motor_noise_nm,
             force_noise: self.force_noise,
             faults: Vec::new(),
             notes,
-        })
+        };
+        part.begins_anew_after_gaps();
+        Some(part)
     }
 }

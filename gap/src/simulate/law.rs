@@ -8,8 +8,9 @@ use super::bearing::Viscous;
 use super::cable::Stops;
 use super::chain::{PHI, PHI_RATE};
 use super::corner::{Corner, Corners};
-use super::inputs::{Curve, turned};
-use super::lanes::{Lanes, within};
+use super::inputs::{Inputs, turned};
+use super::lanes::Lanes;
+use super::noisy::motor_nm;
 use super::now::Now;
 
 #[allow(clippy::struct_excessive_bools, reason = "what any of the lanes has")]
@@ -182,9 +183,7 @@ impl<'a, const L: usize> Law<'a, L> {
         }
         let mut torque = command_nm;
         for lane in 0..L {
-            let physics = self.physics[lane];
-            let clamped = within(torque[lane], physics.limit_nm.unwrap_or(f64::INFINITY));
-            torque[lane] = clamped - within(clamped, physics.dead_zone_nm);
+            torque[lane] = motor_nm(self.physics[lane], torque[lane]);
         }
         torque
     }
@@ -230,15 +229,16 @@ impl<'a, const L: usize> Law<'a, L> {
 
     /// Inputs that run along curves between rows.
     #[inline(always)]
-    pub(super) fn between_rows(&self, now: &mut Now<L>, curve: &Curve, k: usize) {
+    pub(super) fn between_rows(&self, now: &mut Now<L>, inputs: &Inputs, k: usize) {
         if !self.is_curved {
             return;
         }
+        let curve = &inputs.curve;
         for axis in 0..3 {
             now.accel[axis] += self.curved * curve.accel_mps2[axis][k];
         }
         now.bend = self.curved * curve.rate_radps[k];
         now.rate += now.bend;
-        now.load += self.curved * curve.load_nm[k];
+        now.bulge += self.curved * inputs.bulge_by_curve_nm[k];
     }
 }

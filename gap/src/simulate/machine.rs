@@ -88,12 +88,12 @@ impl<'a, const N: usize, const L: usize> Machine<'a, N, L> {
             load: Lanes::all(inputs.load_nm[k]),
             cross: inputs.cross_radps.get(k).copied().unwrap_or(0.0),
             turned: inputs.turned_rad[k],
-            bulge: inputs.bulge_nm[k],
+            bulge: Lanes::all(inputs.bulge_nm[k]),
             bend: Lanes::all(0.0),
             time_s: inputs.start_s + k as f64 * inputs.period_s,
         };
         self.law.aligned(&mut now, logged, [inputs.load_by_turn[0][k], inputs.load_by_turn[1][k]]);
-        self.law.between_rows(&mut now, &inputs.curve, k);
+        self.law.between_rows(&mut now, inputs, k);
         now
     }
 

@@ -14,6 +14,7 @@ mod inputs;
 mod lanes;
 mod law;
 mod machine;
+mod noisy;
 mod now;
 mod physics;
 mod predict;

@@ -10,7 +10,7 @@ pub(super) struct Now<const L: usize> {
     pub(super) load: Lanes<L>,
     pub(super) cross: f64,
     pub(super) turned: f64,
-    pub(super) bulge: f64,
+    pub(super) bulge: Lanes<L>,
     /// What the row has more of the rate for a line to it to have a curve's mean.
     pub(super) bend: Lanes<L>,
     pub(super) time_s: f64,
@@ -62,7 +62,7 @@ impl<const L: usize> Now<L> {
             load: Lanes::all(self.load[lane]),
             cross: self.cross,
             turned: self.turned,
-            bulge: self.bulge,
+            bulge: Lanes::all(self.bulge[lane]),
             bend: Lanes::all(self.bend[lane]),
             time_s: self.time_s,
         }

@@ -38,6 +38,8 @@ pub struct Physics {
     pub limit_nm: Option<f64>,
     /// Subtractive dead zone of the motor [N m].
     pub dead_zone_nm: f64,
+    /// Rms of the torque that the loop makes of its pick-off's noise [N m].
+    pub motor_noise_nm: f64,
     /// Step of the pick-off in the loop [rad].
     pub quantum_rad: f64,
     /// Constant torque on the float [N m].
@@ -264,6 +266,7 @@ impl Physics {
             pure_delay: 0.0,
             limit_nm: None,
             dead_zone_nm: 0.0,
+            motor_noise_nm: 0.0,
             quantum_rad: 0.0,
             float_nm: 0.0,
             float_kg_m: 0.0,
