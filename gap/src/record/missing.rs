@@ -13,6 +13,7 @@ use std::ops::Range;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::grid::filled;
+use super::is_constant;
 
 /// Rows on each side that are asked, and most rows that are filled in by them.
 const ASKED: usize = 24;
@@ -21,8 +22,9 @@ const MOST: usize = 24;
 const PASSES: usize = 3;
 /// Share of the variance that keeps the covariance apart from rounding.
 const RIDGE: f64 = 1e-9;
-/// Error of a row over that of one that is missing alone from which on it is not known.
+/// Error of a row over that of one that is missing alone, and over the scatter of all, from which on it is not known.
 const UNKNOWN: f64 = 3.0;
+const LEAST_SHARE: f64 = 3e-3;
 
 /// An input without gaps.
 pub(super) struct Whole {
@@ -35,7 +37,7 @@ pub(super) struct Whole {
 pub(super) fn whole(raw: &[f64]) -> Whole {
     let values = filled(raw);
     let gaps = gaps(raw);
-    if gaps.is_empty() {
+    if gaps.is_empty() || is_constant(&values) {
         return Whole { values, unknown: Vec::new() };
     }
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -52,7 +54,8 @@ pub(super) fn whole(raw: &[f64]) -> Whole {
 fn filled_in(off: &mut [f64], gaps: &[Range<usize>]) -> Vec<Range<usize>> {
     let covariance = covariance(off);
     let single = ASKED..ASKED + 1;
-    let least = UNKNOWN * by_those_around(off, &covariance, &single).map_or(0.0, |(_, error)| error);
+    let alone = by_those_around(off, &covariance, &single).map_or(0.0, |(_, error)| error);
+    let least = (UNKNOWN * alone).max(LEAST_SHARE * covariance[(0, 0)].sqrt());
     let before = off.to_vec();
     let is_unknown = |gap: &&Range<usize>| {
         let Some((values, error)) = by_those_around(&before, &covariance, gap) else { return true };
@@ -158,5 +161,14 @@ mod tests {
         let own = whole(&raw);
         assert!(own.values.iter().all(|value| value.is_finite()) && own.unknown.is_empty());
         assert!(whole(&[f64::NAN; 50]).values.iter().all(|value| value.is_finite()));
+    }
+
+    #[test]
+    fn what_stands_still_or_moves_slowly_without_noise_is_known() {
+        for amplitude in [0.0, 1.0] {
+            let mut raw: Vec<f64> = (0..8000).map(|k| 9.8 + amplitude * (3e-3 * f64::from(k)).sin()).collect();
+            raw[4000..4010].fill(f64::NAN);
+            assert_eq!(whole(&raw).unknown, []);
+        }
     }
 }
