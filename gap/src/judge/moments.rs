@@ -21,7 +21,7 @@ const AFTER: usize = 100;
 const AT_CEILING: f64 = 0.97;
 const AFTER_CEILING_S: f64 = 1.0;
 /// What a moment must bring beyond its choice [nats].
-const LEAST: f64 = 5.0;
+const LEAST: f64 = 7.0;
 
 /// A box somewhere.
 struct Moment {
