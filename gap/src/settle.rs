@@ -18,7 +18,7 @@ const TOO_HIGH: f64 = 12.0;
 /// it was taken from.
 const AGAIN: usize = 2;
 const AT_LAST: usize = 2;
-const FAR_TOO_HIGH: f64 = 120.0;
+const FAR_TOO_HIGH: f64 = 300.0;
 
 /// A search whose noise stands.
 pub(crate) struct Settled<'a> {
