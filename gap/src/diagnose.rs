@@ -134,7 +134,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
     }
     if !is_shaken
         && let Some(by) = shaken(&whole.problem, whole.search.closest())
-        && (by.rate_radps > 0.0 || has_corners(&whole))
+        && (by.rate_radps > 0.0 || whole.search.fits.iter().any(|fit| fit.physics.has_corners()))
     {
         drop(whole);
         read.is_shaken(by.motor_nm, by.rate_radps);
@@ -278,12 +278,6 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         curve,
         asked: Some(asked),
     }
-}
-
-/// Whether a set that was fitted has a motor with corners.
-fn has_corners(settled: &Settled) -> bool {
-    let is_corner = |effect: &&str| ["torque_saturation", "dead_zone"].contains(effect);
-    settled.search.fits.iter().any(|fit| fit.effects.iter().any(is_corner))
 }
 
 /// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.

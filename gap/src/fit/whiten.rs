@@ -5,8 +5,9 @@
 //! `P + s^2 W(f) |G(f)|^2`, P as in [`super::power`], s the torque that the rate's noise makes, W Wiener's filter: of noise
 //! and motion it leaves that much to be off.
 
+use super::noise::Noise;
 use super::plans::Plans;
-use super::power::{Bands, Noise, Of, SEGMENT};
+use super::power::{Bands, Of, SEGMENT};
 use super::shapes::Shapes;
 use super::signals::of_channel;
 use super::slip::Slips;

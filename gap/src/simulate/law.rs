@@ -100,7 +100,7 @@ impl<'a, const L: usize> Law<'a, L> {
             presliding: physics[0].friction.presliding_rad > 0.0,
             has_hysteresis: any(&|own| own.hysteresis.is_some()),
             has_ripple: any(&|own| own.ripple.is_some()),
-            bends: any(&|own| own.limit_nm.is_some() || own.dead_zone_nm > 0.0),
+            bends: any(&|own| own.has_corners()),
             quantised: any(&|own| own.quantum_rad > 0.0),
             physics,
         }

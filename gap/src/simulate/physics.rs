@@ -275,6 +275,11 @@ impl Physics {
         }
     }
 
+    /// Whether the motor's torque has a ceiling or a dead zone.
+    pub(crate) fn has_corners(&self) -> bool {
+        self.limit_nm.is_some() || self.dead_zone_nm > 0.0
+    }
+
     /// The loop, without what disturbs it and without what bends it.
     #[must_use]
     pub(crate) fn loop_alone(&self) -> Self {

@@ -95,7 +95,7 @@ impl Kind {
                     || physics.friction.stribeck.is_some()
                     || physics.friction.drift.is_some(),
                 physics.hysteresis.is_some() || physics.ripple.is_some(),
-                physics.limit_nm.is_some() || physics.dead_zone_nm > 0.0,
+                physics.has_corners(),
             ],
         }
     }
