@@ -28,8 +28,6 @@ impl Balance {
             if wave && value < least_wave {
                 continue;
             }
-            let others: Vec<usize> = members.iter().copied().filter(|other| *other != member).collect();
-            let rest: Vec<usize> = self.problem.columns(&others);
             let span = if wave { 1.0 + 0.6 / (value * self.motion.travel / 6.0).max(1.0) } else { 1.8 };
             let (from, to) = match &shape {
                 Shape::ViscousCurve { .. } => (0.45, 0.85),
@@ -40,16 +38,8 @@ impl Balance {
                 _ if wave => ((value / span).max(least_wave), value * span),
                 _ => (value / span, value * span),
             };
-            let cost = |shape: &Shape| {
-                let grid = shape.on_grid(&self.motion);
-                let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
-                columns.extend(grid);
-                let mut grams = Grams::new(&columns, &self.target, &self.motion.block);
-                for (place, &column) in rest.iter().enumerate() {
-                    grams.precision[place] = self.problem.grams.precision[column];
-                }
-                grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
-            };
+            let rest: Vec<usize> = members.iter().copied().filter(|other| *other != member).collect();
+            let cost = |shape: &Shape| self.left_with(shape, &rest);
             let best = match shape {
                 Shape::Backlash(play) => {
                     Shape::Backlash(play.refined(&self.motion, |play| cost(&Shape::Backlash(play))))
@@ -60,15 +50,11 @@ impl Balance {
             if wave && self.motion.rotary && cost(&best) > BEHIND_A_GEAR * cost(&shape) {
                 continue;
             }
-            let shape = best;
-            let start = self.columns.len();
-            self.columns.extend(shape.on_grid(&self.motion));
-            for column in &self.columns[start..] {
-                let friction = shape.brakes();
-                let along = if friction { self.problem.slip.along(column) } else { Vec::new() };
-                self.problem.slip.columns.push(along);
+            // a hysteresis in the place of friction is friction that follows the way
+            if let Shape::Hysteresis { width, yields } = best {
+                self.add(Shape::Presliding { displacement: 0.5 * width, yields });
             }
-            self.problem.candidates.push(Candidate { shape, columns: (start..self.columns.len()).collect() });
+            self.add(best);
             added = true;
         }
         if added {
@@ -76,6 +62,29 @@ impl Balance {
             self.problem.grams = Grams::new(&self.columns, &self.target, &self.motion.block);
             self.problem.grams.precision[..precision.len()].copy_from_slice(&precision);
         }
+    }
+
+    /// Squared error with a shape beside members.
+    fn left_with(&self, shape: &Shape, members: &[usize]) -> f64 {
+        let rest = self.problem.columns(members);
+        let mut columns: Vec<Vec<f64>> = rest.iter().map(|&column| self.columns[column].clone()).collect();
+        columns.extend(shape.on_grid(&self.motion));
+        let mut grams = Grams::new(&columns, &self.target, &self.motion.block);
+        for (place, &column) in rest.iter().enumerate() {
+            grams.precision[place] = self.problem.grams.precision[column];
+        }
+        grams.square_of_fit(&(0..columns.len()).collect::<Vec<_>>())
+    }
+
+    /// One shape more in the library.
+    fn add(&mut self, shape: Shape) {
+        let start = self.columns.len();
+        self.columns.extend(shape.on_grid(&self.motion));
+        for column in &self.columns[start..] {
+            let along = if shape.brakes() { self.problem.slip.along(column) } else { Vec::new() };
+            self.problem.slip.columns.push(along);
+        }
+        self.problem.candidates.push(Candidate { shape, columns: (start..self.columns.len()).collect() });
     }
 }
 

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::library::Shape;
+use super::memory::Yields;
 use super::motion::{LEAST_WAVES, Motion};
 
 /// Travel from which on one wave a turn is tried, however few of them the others must have.
@@ -40,7 +41,7 @@ pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
     for share in [3e-4, 1e-3, 3e-3, 1e-2, 3e-2] {
         let length = share * m.travel;
         if length > 4.0 * m.position_noise {
-            shapes.push(Shape::Presliding { displacement: length });
+            shapes.extend(Yields::ALL.map(|yields| Shape::Presliding { displacement: length, yields }));
         }
     }
     // gravity on an arm has one wave a turn; on a shorter way it is a spring
@@ -48,7 +49,7 @@ pub(super) fn shapes(m: &Motion) -> Vec<Shape> {
         shapes.push(Shape::Ripple { wave_number: 1.0 });
     }
     for share in [0.03, 0.055, 0.1, 0.18, 0.3] {
-        shapes.push(Shape::Hysteresis { width: share * m.travel });
+        shapes.extend(Yields::ALL.map(|yields| Shape::Hysteresis { width: share * m.travel, yields }));
     }
     for share in [0.05, 0.15, 0.4, 1.0] {
         let time_s = share * m.length_s();

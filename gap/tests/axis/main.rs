@@ -15,3 +15,4 @@ mod simulated;
 mod simulator;
 mod small;
 mod unseen;
+mod yields;

@@ -14,6 +14,8 @@ pub(in crate::axis) const BEYOND: f64 = 1.15;
 /// power: what their formulation leaves shifts parameters, and looks like effects of reversals.
 const BESIDE: f64 = 3.0;
 const CRUMB: f64 = 0.06;
+/// The same of what yields beside what else yields: the first may yield at other displacements than it is formulated with.
+const CRUMB_OF_YIELDING: f64 = 0.15;
 
 /// A set with what its columns and the nominal parameters are fitted to.
 pub(super) struct Sizes<'a> {
@@ -74,10 +76,12 @@ pub(super) fn beyond(balance: &Balance, model: &AxisModel, set: &Sizes, errors: 
 /// the power of all, and of the parameters beyond what is known of them. They are fitted, and not named.
 pub(super) fn crumbs(balance: &Balance, set: &Sizes, beyond: &[usize]) -> Vec<usize> {
     let shifted: f64 = beyond.iter().map(|&index| set.shift_power(balance, index)).sum();
-    let least = CRUMB * (set.named_power(balance) + shifted);
+    let all = set.named_power(balance) + shifted;
+    let yielding = set.members.iter().filter(|&&member| balance.problem.candidates[member].shape.yields()).count();
     let is_crumb = |&member: &usize| {
         let candidate = &balance.problem.candidates[member];
-        candidate.shape.is_rough() && set.power(balance, candidate) < least
+        let least = if candidate.shape.yields() && yielding > 1 { CRUMB_OF_YIELDING } else { CRUMB };
+        candidate.shape.is_rough() && set.power(balance, candidate) < least * all
     };
     set.members.iter().copied().filter(is_crumb).collect()
 }

@@ -1,10 +1,13 @@
 //! Probabilities of sets: how often each is the best when blocks are drawn anew.
 
+use std::f64::consts::TAU;
+
 use gimbal_model_file::AxisModel;
 
 use super::beyond::names;
 use super::{LEFT, Ranked, Shrunk};
 use crate::axis::balance::Balance;
+use crate::axis::library::Shape;
 use crate::axis::search::{LEAST_OF_REST, Set};
 use crate::judge::UNSEEN;
 
@@ -20,6 +23,8 @@ const EVEN_SO: f64 = 0.1;
 /// Kinds of effect that a log may well show at once, and what each further one leaves of the probability of the set.
 const SURE_KINDS: usize = 2;
 const EACH_KIND: f64 = 0.6;
+/// Waves over the travel below which a wave of the position draws a function of the place more than that it repeats.
+const LONG: f64 = 5.0;
 
 /// What is left of a gap.
 #[derive(Debug, Clone, Copy)]
@@ -53,6 +58,20 @@ pub(super) fn doubt(rest: Rest, kinds: usize) -> f64 {
     let of_rest = (left / (left + half)).max(EVEN_SO);
     let known = (1.0 - of_rest) * (0..kinds.saturating_sub(SURE_KINDS)).fold(1.0, |known, _| known * EACH_KIND);
     (1.0 - known).clamp(0.005, 0.98)
+}
+
+/// Long waves beside the first one of their effect: a few of them draw any function of the place, so each is as a kind more.
+fn long_waves_beside(balance: &Balance, set: &Set) -> usize {
+    let shapes = set.members.iter().map(|&member| &balance.problem.candidates[member].shape);
+    let is_long = |shape: &&Shape| {
+        let number = shape.numbers().first().filter(|(name, _)| *name == "wave_number").map(|(_, number)| *number);
+        number.is_some_and(|number| number * balance.motion.travel < LONG * TAU)
+    };
+    let mut effects: Vec<&str> = shapes.filter(is_long).map(Shape::effect).collect();
+    let all = effects.len();
+    effects.sort_unstable();
+    effects.dedup();
+    all - effects.len()
 }
 
 /// Probabilities of sets: how often each is the best when blocks are drawn anew.
@@ -100,7 +119,7 @@ pub(super) fn rank(
         let sum: f64 = weights.iter().sum();
         wins.iter_mut().zip(&weights).for_each(|(wins, weight)| *wins += weight / sum);
     }
-    let kinds_named = names(balance, &best.members, model).len();
+    let kinds_named = names(balance, &best.members, model).len() + long_waves_beside(balance, best);
     let unknown = if kinds_named == 0 { UNSEEN } else { doubt(Rest::of(shrunk), kinds_named) };
     let total = wins.iter().sum::<f64>() + 1.0;
     let mut ranking: Vec<Ranked> = kinds

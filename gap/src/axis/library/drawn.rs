@@ -1,7 +1,7 @@
 //! What the motion draws of an effect.
 
 use super::{NOMINAL, Shape};
-use crate::axis::memory::{dahl_state, play_state};
+use crate::axis::memory::{Yields, dahl_state};
 use crate::axis::motion::Motion;
 use crate::axis::resonance;
 
@@ -26,8 +26,11 @@ impl Shape {
             Self::Stribeck { rate, exponent } => {
                 vec![by(&|i| m.s[i] * (-(m.v[i].abs() / rate).powf(exponent)).exp())]
             }
-            Self::Presliding { displacement } => {
-                let z = dahl_state(&m.q, displacement);
+            Self::Presliding { displacement, yields } => {
+                let z = match yields {
+                    Yields::One => dahl_state(&m.q, displacement),
+                    _ => yields.state(&m.q, displacement),
+                };
                 vec![by(&|i| z[i] - m.s[i])]
             }
             Self::Quadratic => vec![by(&|i| m.v[i] * m.v[i].abs())],
@@ -41,7 +44,7 @@ impl Shape {
             Self::FrictionTaper => vec![by(&|i| m.s[i] * (m.q[i] - middle))],
             // where it is slack is not known
             Self::Spring => vec![by(&|i| m.q[i] - middle), vec![1.0; m.q.len()]],
-            Self::Hysteresis { width } => vec![play_state(&m.q, width)],
+            Self::Hysteresis { width, yields } => vec![yields.state(&m.q, 0.5 * width)],
             Self::Ripple { wave_number } => waves(wave_number, &|_| 1.0),
             Self::MotorRipple { wave_number } => waves(wave_number, &|i| m.needed[i]),
             // what the effort needed is of has friction in the place of the dead zone

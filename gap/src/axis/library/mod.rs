@@ -10,6 +10,7 @@
 mod drawn;
 mod rules;
 
+use super::memory::Yields;
 use super::play::Play;
 
 /// What an effect looks like; numbers are its shape parameters.
@@ -29,6 +30,7 @@ pub(super) enum Shape {
     },
     Presliding {
         displacement: f64,
+        yields: Yields,
     },
     Quadratic,
     ViscousCurve {
@@ -53,6 +55,7 @@ pub(super) enum Shape {
     Spring,
     Hysteresis {
         width: f64,
+        yields: Yields,
     },
     Ripple {
         wave_number: f64,
@@ -167,7 +170,10 @@ impl Shape {
     pub(super) fn numbers(&self) -> Vec<(&'static str, f64)> {
         match *self {
             Self::Stribeck { rate, exponent } => vec![("rate", rate), ("exponent", exponent)],
-            Self::Presliding { displacement } => vec![("displacement", displacement)],
+            Self::Presliding { displacement, yields } => {
+                [vec![("displacement", displacement)], yields.numbers()].concat()
+            }
+            Self::Hysteresis { width, yields } => [vec![("width", width)], yields.numbers()].concat(),
             Self::ViscousCurve { exponent } => vec![("exponent", exponent)],
             Self::FrictionDrift { time_s } | Self::ViscousDrift { time_s } | Self::BiasDrift { time_s } => {
                 vec![("time_constant", time_s)]
@@ -176,7 +182,7 @@ impl Shape {
             | Self::LoadRipple { wave_number, .. }
             | Self::Ripple { wave_number }
             | Self::MotorRipple { wave_number } => vec![("wave_number", wave_number)],
-            Self::Hysteresis { width } | Self::Backlash(Play { width, .. }) => vec![("width", width)],
+            Self::Backlash(Play { width, .. }) => vec![("width", width)],
             Self::Mode { frequency_hz, damping } => vec![("frequency_hz", frequency_hz), ("damping_ratio", damping)],
             _ => Vec::new(),
         }
@@ -187,7 +193,7 @@ impl Shape {
         let mut other = self.clone();
         match &mut other {
             Self::Stribeck { rate: place, .. }
-            | Self::Presliding { displacement: place }
+            | Self::Presliding { displacement: place, .. }
             | Self::ViscousCurve { exponent: place }
             | Self::FrictionDrift { time_s: place }
             | Self::ViscousDrift { time_s: place }
@@ -196,7 +202,7 @@ impl Shape {
             | Self::LoadRipple { wave_number: place, .. }
             | Self::Ripple { wave_number: place }
             | Self::MotorRipple { wave_number: place }
-            | Self::Hysteresis { width: place }
+            | Self::Hysteresis { width: place, .. }
             | Self::Mode { frequency_hz: place, .. }
             | Self::Backlash(Play { width: place, .. }) => *place = number,
             _ => {}

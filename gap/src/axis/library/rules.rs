@@ -46,6 +46,11 @@ impl Shape {
         )
     }
 
+    /// Whether it yields, at one displacement or at many.
+    pub(in crate::axis) fn yields(&self) -> bool {
+        matches!(self, Self::Presliding { .. } | Self::Hysteresis { .. })
+    }
+
     /// Share of the effort's power that it must take; what hangs on the place or on a channel is known by that.
     pub(in crate::axis) fn least_of_effort(&self) -> f64 {
         match self {
