@@ -1,5 +1,7 @@
 //! States that remember where the axis came from.
 
+use std::iter::successors;
+
 /// Dahl's state over its limit: dz = (1 - z sgn(dq))/displacement dq, exact between rows.
 pub(super) fn dahl_state(q: &[f64], displacement: f64) -> Vec<f64> {
     let mut z = 0.0_f64;
@@ -56,7 +58,7 @@ impl Yields {
             Self::One => vec![(1.0, 1.0)],
             Self::Even => (0..ELEMENTS).map(|i| (2.0 * i as f64 + 1.0) / n).map(|own| (own, own / n)).collect(),
             Self::Wide => {
-                let powers: Vec<f64> = (0..ELEMENTS).map(|i| APART.powi(i as i32)).collect();
+                let powers: Vec<f64> = successors(Some(1.0), |own| Some(APART * own)).take(ELEMENTS).collect();
                 let soft = powers.iter().map(|own| 1.0 / own).sum::<f64>() / n;
                 powers.iter().map(|own| (own * soft, 1.0 / n)).collect()
             }
