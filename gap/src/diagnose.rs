@@ -155,7 +155,11 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         imitated = Some(format!("{told}; what the library has explains the log better as it is"));
     }
     let bearing = &model.config.bearing;
-    let part = if read.comes_near_a_stop() {
+    let rested = read.without_rests().filter(|_| leaves_something(&whole, model));
+    let without_rests = rested.is_some();
+    let part = if without_rests {
+        rested
+    } else if read.comes_near_a_stop() {
         astray(&whole).then(|| read.away_from_stop(bearing)).flatten()
     } else {
         begins_wrong(&whole).then(|| read.after_its_beginning(bearing)).flatten()
@@ -167,7 +171,7 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
             // two at once would be twice the memory, and a part that is no better is rare
             drop(whole);
             let own = settled(part, model);
-            in_part = left_of(&own) < left;
+            in_part = if without_rests { !leaves_something(&own, model) } else { left_of(&own) < left };
             if in_part {
                 own
             } else {
@@ -278,6 +282,12 @@ pub fn diagnose(log: &Log, model: &ModelFile) -> Diagnosis {
         curve,
         asked: Some(asked),
     }
+}
+
+/// Whether what it finds leaves something of the log.
+fn leaves_something(Settled { problem, search, .. }: &Settled, model: &ModelFile) -> bool {
+    let verdict = decide(problem, search, &model.tolerance).verdict;
+    matches!(verdict, Verdict::PartlyExplained | Verdict::Unexplained)
 }
 
 /// Whether nothing that was tried comes near the log: a way through the stop decides all that follows it.

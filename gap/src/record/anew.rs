@@ -35,6 +35,12 @@ impl Record {
         self.begins_anew(std::slice::from_ref(&all));
     }
 
+    /// Takes these rows, too, for ones whose inputs are not known.
+    pub(super) fn does_not_know(&mut self, rows: Vec<Range<usize>>) {
+        self.unknown = worst(self.unknown.iter().cloned().chain(rows).collect());
+        self.begins_anew_after_gaps();
+    }
+
     /// Masks what is not in these runs and rows whose inputs are not known: the platform begins anew after each.
     fn begins_anew(&mut self, free: &[Range<usize>]) {
         let free = without(free, &self.unknown);

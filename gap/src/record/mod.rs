@@ -4,6 +4,7 @@ mod anew;
 mod channel;
 mod colour;
 mod converter;
+mod dwell;
 mod faults;
 mod force_noise;
 mod grid;

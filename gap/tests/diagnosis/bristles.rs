@@ -10,7 +10,7 @@ use gimbal_model_file::ModelFile;
 use gimbal_plant::Row;
 use gimbal_servo::Config;
 
-use crate::corpus::{Excitation, NOISE, ROW_S, Simulated, as_log, between, drifted, rng, rows, sensed};
+use crate::corpus::{Excitation, NOISE, ROW_S, SENSED, Simulated, as_log, between, drifted, rng, rows, sensed};
 use crate::{names, report};
 
 /// Steps a row, of Heun's method.
@@ -18,6 +18,14 @@ const STEPS: usize = 80;
 /// Displacement of the bristles [rad], and time constant of their damping [s].
 const DISPLACEMENT_RAD: f64 = 2e-6;
 const DAMPING_S: f64 = 1.5e-3;
+
+/// Noise of the columns: that of the rates, and that of the outputs over what it is elsewhere.
+fn noise(rate_radps: f64, of_outputs: f64) -> [f64; SENSED] {
+    let mut noise = NOISE;
+    noise[3..5].fill(rate_radps);
+    noise[5..].iter_mut().for_each(|sigma| *sigma *= of_outputs);
+    noise
+}
 
 #[derive(Clone, Copy)]
 struct Bristles {
@@ -63,10 +71,9 @@ impl Bristles {
         out
     }
 
-    fn simulate(self, platform: &Config, rows: &[Row], seed: u64) -> Simulated {
+    /// A log of them, its columns with such noise.
+    fn simulate(self, platform: &Config, rows: &[Row], noise: [f64; SENSED], seed: u64) -> Simulated {
         let rng = &mut rng(seed, 3);
-        let mut noise = NOISE;
-        noise[3..5].iter_mut().for_each(|sigma| *sigma *= 0.1);
         let mut simulated = Simulated::default();
         let mut x = State::default();
         let step_s = ROW_S / STEPS as f64;
@@ -90,8 +97,51 @@ fn a_bearing_that_holds_by_bristles_is_no_gap() {
     for (excitation, bend) in [(Excitation::RateTable, 0.0), (Excitation::Manoeuvre, 0.0), (Excitation::RateTable, 0.7)]
     {
         let platform = drifted(&Config::consistent(), 0.6, 23);
-        let log = as_log(&Bristles { bend }.simulate(&platform, &rows(excitation, 14.0, 23), 23).converted());
+        let log = as_log(
+            &Bristles { bend }.simulate(&platform, &rows(excitation, 14.0, 23), noise(2e-5, 1.0), 23).converted(),
+        );
         let diagnosis = diagnose(&log, &ModelFile::default());
         assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{excitation:?}, {bend}: {:?}", names(&diagnosis));
     }
+}
+
+/// Slews of a table between rests, about a level axis: the rate at a time.
+fn slewed(t: f64) -> f64 {
+    const SLEWS: [(f64, f64, f64); 9] = [
+        (0.3, 1.1, 0.5),
+        (2.2, 0.8, -0.9),
+        (3.8, 1.3, 0.7),
+        (5.9, 0.7, 0.4),
+        (7.2, 1.0, -0.6),
+        (8.9, 1.2, 0.9),
+        (10.8, 0.8, -0.5),
+        (12.3, 1.0, -0.8),
+        (14.1, 1.1, 0.6),
+    ];
+    let slew = |&(from, length, rate): &(f64, f64, f64)| {
+        let along = ((t - from).min(from + length - t) / 0.15).clamp(0.0, 1.0);
+        rate * (1.5 - along) * 2.0 * along * along
+    };
+    SLEWS.iter().map(slew).sum()
+}
+
+/// What holds the gimbal between two slews hangs on less turning than the logged rate tells.
+#[test]
+fn a_bearing_that_rests_between_slews_is_no_gap() {
+    let row = |k: usize| Row {
+        accel_x_mps2: 3.3,
+        accel_y_mps2: 9.2,
+        vehicle_rate_radps: slewed(k as f64 * ROW_S),
+        ..Row::default()
+    };
+    let platform = drifted(&Config::consistent(), 0.5, 29);
+    let rows: Vec<Row> = (0..16_000).map(row).collect();
+    let log = as_log(&Bristles { bend: 0.0 }.simulate(&platform, &rows, noise(3e-5, 4.0), 29));
+    let diagnosis = diagnose(&log, &ModelFile::default());
+    assert_eq!(report(&diagnosis)["verdict"], "no_gap", "{:?}", names(&diagnosis));
+    assert!(
+        diagnosis.record.notes.iter().any(|note| note.starts_with("the bearing rests")),
+        "{:?}",
+        diagnosis.record.notes
+    );
 }
