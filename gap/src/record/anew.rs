@@ -64,8 +64,8 @@ fn keep_longest(runs: &mut Vec<Range<usize>>, most: usize) {
     }
 }
 
-/// Runs of rows that are in any of some, the longest of them.
-pub(super) fn worst(mut some: Vec<Range<usize>>) -> Vec<Range<usize>> {
+/// Runs of rows that are in any of some.
+pub(super) fn merged(mut some: Vec<Range<usize>>) -> Vec<Range<usize>> {
     some.sort_by_key(|run| run.start);
     let mut runs: Vec<Range<usize>> = Vec::new();
     for run in some {
@@ -74,6 +74,12 @@ pub(super) fn worst(mut some: Vec<Range<usize>>) -> Vec<Range<usize>> {
             _ => runs.push(run),
         }
     }
+    runs
+}
+
+/// The longest of them.
+pub(super) fn worst(some: Vec<Range<usize>>) -> Vec<Range<usize>> {
+    let mut runs = merged(some);
     keep_longest(&mut runs, MOST_RUNS);
     runs
 }
